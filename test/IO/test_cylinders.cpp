@@ -237,7 +237,8 @@ BOOST_AUTO_TEST_CASE(malformed_tables_are_refused_with_the_line)
   refuses_table(header, "the file has no node");
   refuses_table("sx,sy,ax,ay,az,length,radius,parent\n", "line 1: there is no column 'startZ'");
   refuses_table("sx,sy,sz,ax,ay,az,length,parent\n", "line 1: there is no column 'radius'");
-  refuses_table("sx,sy,sz,ax,ay,az,radius,parent\n", "line 1: there is no end of the cylinders");
+  refuses_table("sx,sy,sz,ax,ay,az,radius,parent\n",
+                "line 1: the ends of the cylinders are missing");
   refuses_table("sx,sy,sz,ax,ay,az,length,radius,parent,Radius (m)\n",
                 "line 1: the column 'radius' is named twice");
   refuses_table(header + "0,0,0,0,0,1,1,0.1,0\n", "line 2: expected 10 columns as in the header");

@@ -32,10 +32,13 @@ namespace IO {
   Formats and rules are those of `Point_reader`. Faces and other elements are discarded.
 
   \param path name of the file
-  \return the points; an empty table for a file that declares zero points
+  \return the points in the order of the file, with positions in its unit [L]; an empty table for a
+          file that declares zero points
   \throws pcs::IO_error with the name of the file, the line or byte, and the expected content
+  \par Complexity
+  Linear in the size of the file.
   \par Determinism
-  The result for a file is the same, bit for bit, in every locale and on every machine.
+  The result for a file is bitwise identical in every locale and on every machine.
 */
 inline Point_table read_points(const std::string& path)
 {
@@ -47,11 +50,14 @@ inline Point_table read_points(const std::string& path)
 
 /*!
   \ingroup PkgPcsIORef
-  \brief reads all points of a file as the other overload, and the faces of a mesh.
+  \brief reads all points of a file as the first overload, and also the faces of a mesh.
 
   \param path name of the file
-  \param faces receives faces, and lists and other elements of PLY; null if the file has none of
-         them. `Write_options::faces` writes them again.
+  \param faces is replaced by the faces, and the lists and other elements of a PLY file; null if the
+         file has none of them. `Write_options::faces` writes them. Unchanged when an exception is
+         thrown
+  \return the points as of the first overload
+  \throws pcs::IO_error as the first overload
 */
 inline Point_table read_points(const std::string& path, std::shared_ptr<Mesh_faces>& faces)
 {
@@ -69,9 +75,11 @@ inline Point_table read_points(const std::string& path, std::shared_ptr<Mesh_fac
   \tparam PointRange a container with `insert(end, first, last)`; its value type is the `Point_3`
           of a CGAL kernel
   \param path name of the file
-  \param points receives the positions; unchanged when an exception is thrown
-  \throws pcs::IO_error as from the other overload, and if a coordinate is too large for the
-          number type of `points`
+  \param points receives the positions [L] at its end; unchanged when an exception is thrown
+  \throws pcs::IO_error as the first overload, and if a coordinate is out of the range of the
+          coordinate type of `points`
+  \par Complexity
+  Linear in the size of the file. Other properties of the points are held for 65,536 points at most.
 */
 template <class PointRange>
 void read_points(const std::string& path, PointRange& points)

@@ -24,7 +24,7 @@ namespace pcs {
 namespace IO {
 namespace internal {
 
-//! the columns of a tree as CSV, in the order of writing
+//! the columns of a tree in a CSV file, in the order in which they are written
 constexpr std::array<const char*, 11> tree_columns =
     {"id", "parent", "branch", "order", "x", "y", "z", "r", "a", "b", "hits"};
 constexpr std::size_t column_hits = 10; // the only optional column
@@ -41,7 +41,7 @@ inline std::vector<std::string_view> split_at_commas(std::string_view line)
   }
 }
 
-//! returns for each of `tree_columns` its index in the header, `npos` if it is missing
+//! returns the index in the header of each of `tree_columns`, `npos` for a missing column
 inline std::array<std::size_t, 11> find_tree_columns(const Input_file& file,
                                                      std::string_view header)
 {
@@ -57,8 +57,8 @@ inline std::array<std::size_t, 11> find_tree_columns(const Input_file& file,
     if (c == tree_columns.size())
       file.fail_at_line(
           "unknown column " + in_quotes(names[i]) +
-          ", expected id,parent,branch,order,x,y,z,r,a,b,hits; a table of cylinders has "
-          "columns of their starts");
+          ", expected id,parent,branch,order,x,y,z,r,a,b,hits; a table of cylinders needs the "
+          "columns startX, startY, startZ");
     if (index[c] != npos)
       file.fail_at_line("the column " + in_quotes(names[i]) + " is named twice");
     index[c] = i;
@@ -67,11 +67,11 @@ inline std::array<std::size_t, 11> find_tree_columns(const Input_file& file,
     if (index[c] == npos && c != column_hits)
       file.fail_at_line(std::string("there is no column '") + tree_columns[c] +
                         "', expected id,parent,branch,order,x,y,z,r,a,b,hits; a table of "
-                        "cylinders has columns of their starts");
+                        "cylinders needs the columns startX, startY, startZ");
   return index;
 }
 
-/// Nodes of a file with their links, branches and numbers of points.
+/// The rows of a file: nodes, ids of parents, branches and numbers of points.
 template <class Kernel>
 struct Node_rows
 {
@@ -81,7 +81,7 @@ struct Node_rows
   std::vector<std::size_t> hits;                      ///< empty without that column
 };
 
-/// Reads the fields of a line by column.
+/// Reads the value of each column from a line.
 class Field_reader
 {
 public:
@@ -120,7 +120,7 @@ private:
   std::string_view word(std::size_t c) const { return m_words[m_index[c]]; }
 
   const Input_file& m_file;
-  std::array<std::size_t, 11> m_index; // of each of `tree_columns` in a line
+  std::array<std::size_t, 11> m_index; // position of each of `tree_columns` in a line
   std::size_t m_number_of_columns;
   std::vector<std::string_view> m_words;
 };
@@ -241,18 +241,28 @@ Tree_skeleton<Kernel> link_rows(const std::string& path, const Node_rows<Kernel>
   \brief reads a tree skeleton from a CSV file with the columns
          `id,parent,branch,order,x,y,z,r,a,b,hits`.
 
-  The first line names the columns, in any order; `hits` is optional. Each row is one node: its id,
-  the id of its parent (-1: the root), the id and order of its branch, position, radius, the half
-  axes of its cross-section, and the number of scan points assigned to it. Nodes are numbered in the
-  order of the file, branches in the order of their first rows.
+  The first line names the columns, in any order. The column `hits` is optional. Each other row is
+  one node:
+
+  | columns | contents |
+  |---|---|
+  | `id`, `parent` | id of the node, and of its parent; -1 for the root |
+  | `branch`, `order` | id and order of the branch |
+  | `x`, `y`, `z` | position [L] |
+  | `r`, `a`, `b` | radius, and half axes of the cross-section [L] |
+  | `hits` | number of scan points on its surface [count] |
+
+  Nodes are numbered in the order of the rows, branches in the order of their first rows. All radii
+  count as measured.
 
   \tparam Kernel a kernel of CGAL
   \param path name of the file
   \param tree is replaced; unchanged when an exception is thrown
   \param hits is replaced by one number per node, or cleared if the file has no such column
-  \param ids is replaced by the ids of the nodes in the file
-  \throws pcs::IO_error when the file cannot be read, a line is malformed, the nodes do not form one
-          tree with one root, or the nodes of a branch are not a chain
+  \param ids is replaced by the id of each node in the file
+  \throws pcs::IO_error when the file cannot be read, a column is unknown, missing or named twice, a
+          line has another number of columns, a value is not a finite number or out of its range,
+          the nodes do not form one tree with one root, or the nodes of a branch are not a chain
   \par Complexity
   Linear in the size of the file.
 */
@@ -271,7 +281,7 @@ void read_tree_csv(const std::string& path,
 }
 
 //! \ingroup PkgPcsIORef
-//! overload without the ids
+//! reads a tree as the first overload, without the ids
 template <class Kernel>
 void read_tree_csv(const std::string& path,
                    Tree_skeleton<Kernel>& tree,
@@ -282,7 +292,7 @@ void read_tree_csv(const std::string& path,
 }
 
 //! \ingroup PkgPcsIORef
-//! overload without the numbers of points
+//! reads a tree as the first overload, without the ids and the numbers of points
 template <class Kernel>
 void read_tree_csv(const std::string& path, Tree_skeleton<Kernel>& tree)
 {

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Reads a tree skeleton from a file that lists the branches by order.
+// Reads a tree skeleton from a file in which the branches are sorted by order.
 
 #ifndef PCS_IO_READ_TXTSKL_H
 #define PCS_IO_READ_TXTSKL_H
@@ -62,12 +62,12 @@ private:
 
   void read_branch(std::size_t l, Layer& layer)
   {
-    const auto father = m_file.number<std::int64_t>("the number of the father branch");
-    const auto point = m_file.number<std::int64_t>("the number of the father point");
+    const auto father = m_file.number<std::int64_t>("the index of the parent branch");
+    const auto point = m_file.number<std::int64_t>("the index of the parent point");
     const bool is_root = l == 0;
     if (is_root ? father != -1 || point != -1 : !has_father(father, point))
-      m_file.fail("there is no father " + std::to_string(father) + " " + std::to_string(point) +
-                  " in the layer above");
+      m_file.fail("there is no parent " + std::to_string(father) + " " + std::to_string(point) +
+                  " in the previous layer");
     const std::size_t n = m_file.count("the number of points");
     if (n == 0)
       m_file.fail("a branch has no points");
@@ -127,15 +127,21 @@ private:
 
   The first line is the number of layers. A layer contains the branches of one order. It begins with
   a line `Layer <index>` and the number of its branches. Each branch has a line
-  `<father branch> <father point>`, the number of its points, and one line `x y z radius` per point.
-  Father branch and father point are indices in the previous layer, counted from 0; they are `-1 -1`
-  for the trunk. Every branch has a separate first node. The edge that leads to it has the length 0
-  if the file repeats the father point.
+  `<parent branch> <parent point>`, the number of its points, and one line `x y z radius` [L] per
+  point. Parent branch and parent point are indices in the previous layer, counted from 0. They are
+  `-1 -1` for the trunk, the only branch of the first layer.
+
+  Each point becomes a node with a circular cross-section, in the order of the file. The edge to
+  the first node of a branch has the length 0 if the file repeats the parent point.
 
   \tparam Kernel a kernel of CGAL
   \param path name of the file
   \param tree is replaced; unchanged when an exception is thrown
-  \throws pcs::IO_error naming the line and the expected content
+  \throws pcs::IO_error with the line and the expected content, when the file cannot be read, a
+          value is missing or not a finite number, a radius is negative, a branch has no points, or
+          a parent does not exist
+  \par Complexity
+  Linear in the size of the file.
 */
 template <class Kernel>
 void read_txtskl(const std::string& path, Tree_skeleton<Kernel>& tree)

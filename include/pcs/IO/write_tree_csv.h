@@ -19,14 +19,23 @@ namespace IO {
 
 /*!
   \ingroup PkgPcsIORef
-  \brief writes a tree skeleton with the columns `id,parent,branch,order,x,y,z,r,a,b,hits`.
+  \brief writes a tree skeleton to a CSV file with the columns
+         `id,parent,branch,order,x,y,z,r,a,b,hits`.
 
-  Ids are node indices, so node labels of points remain valid; `branch` is the `id` of the branch,
-  or its index if it has none. Numbers have as many digits as required to read them back unchanged.
-  The file is complete or absent.
+  Each row is one node, and `read_tree_csv()` reads the file.
+  - `id` is the index of the node in `tree`, so that labels of points by nodes remain valid.
+  - `parent` is the id of the parent, -1 for the root.
+  - `branch` is `Tree_branch::id`, or the index of the branch if it has no id.
+  - `x`, `y`, `z`, the radius `r` and the half axes `a`, `b` of the cross-section have the length
+    unit of the tree [L].
+
+  Numbers have as many digits as required to read them back unchanged. The file is written
+  completely or not at all.
 
   \tparam Kernel a kernel of CGAL
-  \param hits the number of points on each node; empty: the column is omitted
+  \param path name of the file
+  \param tree a tree with branches
+  \param hits one value per node: the number of points on it [count]; empty: the column is omitted
   \throws pcs::IO_error when the file cannot be written
   \throws pcs::Invalid_input when the graph is not a tree below its root, a number is not finite,
           a branch of a node does not exist, or `hits` has another size than there are nodes

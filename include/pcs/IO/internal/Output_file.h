@@ -27,10 +27,10 @@ namespace IO {
 namespace internal {
 
 /*
-  Writes to a temporary file in the directory of the target, which `commit()` renames. On systems
-  that support it, the temporary file has no name until then, so that no file remains when the
-  program is killed. An existing target that is not a regular file (a device, a pipe) is written
-  directly, because renaming would replace the device itself.
+  Writes to a temporary file in the folder of the target; `commit()` renames it to the target. On
+  systems that support it, the temporary file has no name until then. If the program is killed, no
+  file remains. An existing target that is not a regular file, such as a device or a pipe, is
+  written directly, because renaming would replace the device itself.
 */
 class Output_file
 {
@@ -86,7 +86,7 @@ public:
   //! returns the number of bytes written so far
   std::size_t position() const { return m_position; }
 
-  //! overwrites bytes near the front of the file
+  //! overwrites `n` bytes that were written before, from position `at`
   void patch(std::size_t at, const void* data, std::size_t n)
   {
     flush();
@@ -125,7 +125,7 @@ private:
   static constexpr std::size_t buffer_size = std::size_t(1) << 18;
   static constexpr int most_names = 1000;
 
-  /// The name is independent of the target, whose name may have the largest possible length.
+  /// Does not contain the name of the target, which may already have the largest possible length.
   std::filesystem::path temporary_name(int i) const
   {
     return m_target.parent_path() / (".pcs_unfinished_" + std::to_string(i) + ".tmp");
@@ -140,7 +140,7 @@ private:
         break;
     }
     if (m_file == nullptr)
-      m_temporary.clear(); // belongs to another process
+      m_temporary.clear(); // not created here, so it must not be removed
     else
       std::setvbuf(m_file, nullptr, _IONBF, 0);
   }
@@ -151,7 +151,8 @@ private:
     return "/proc/self/fd/" + std::to_string(file);
   }
 
-  /// Returns `false` if the file system does not support unnamed files or their naming.
+  /// Returns `false` if the file system does not support files without a name, or cannot name
+  /// them later.
   bool open_nameless()
   {
     const std::filesystem::path folder = m_target.parent_path();

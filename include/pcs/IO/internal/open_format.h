@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Opens the reader or the writer of a format; the formats themselves may be compiled once.
+// Opens the reader or the writer of a format. The bodies may be compiled separately.
 
 #ifndef PCS_IO_INTERNAL_OPEN_FORMAT_H
 #define PCS_IO_INTERNAL_OPEN_FORMAT_H
@@ -17,7 +17,7 @@ namespace pcs {
 namespace IO {
 namespace internal {
 
-//! opens a file of this format and reads its header; `do_keep_faces` matters for meshes only
+//! opens a file of this format and reads its header; `do_keep_faces` affects meshes only
 template <File_format format>
 std::unique_ptr<Format_reader> open_reader(const std::string& path, bool do_keep_faces);
 

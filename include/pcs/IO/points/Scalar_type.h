@@ -50,7 +50,7 @@ using Property_values = std::variant<std::vector<std::int8_t>,
                                      std::vector<float>,
                                      std::vector<double>>;
 
-//! a value that represents a type, for `dispatch()`
+//! an object that represents the type `T`; `dispatch()` passes it
 template <class T>
 struct Type_tag
 {
@@ -89,7 +89,7 @@ constexpr Scalar_type scalar_type_of()
   return static_cast<Scalar_type>(internal::scalar_index<T>);
 }
 
-//! calls `f(Type_tag<T>())` with the type that `type` denotes
+//! returns `f(Type_tag<T>())` for the type `T` that `type` denotes
 template <class Function>
 decltype(auto) dispatch(Scalar_type type, Function&& f)
 {
@@ -118,7 +118,7 @@ decltype(auto) dispatch(Scalar_type type, Function&& f)
   return f(Type_tag<double>());
 }
 
-//! returns the number of bytes of one value
+//! returns the number of bytes of one value [count]
 inline std::size_t size_of(Scalar_type type)
 {
   return dispatch(type, [](auto tag) { return sizeof(typename decltype(tag)::type); });
@@ -154,7 +154,7 @@ inline Property_values make_values(Scalar_type type, std::size_t n = 0)
   });
 }
 
-//! returns the type of the values
+//! returns the enumerator of the type of the values
 inline Scalar_type type_of(const Property_values& values)
 {
   return static_cast<Scalar_type>(values.index());

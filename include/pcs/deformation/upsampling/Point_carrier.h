@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Deformation of points outside the session by the samples around them.
+// Deformation of points that are not in the session, by the nearest samples.
 
 #ifndef PCS_DEFORMATION_UPSAMPLING_POINT_CARRIER_H
 #define PCS_DEFORMATION_UPSAMPLING_POINT_CARRIER_H
@@ -23,10 +23,12 @@ namespace pcs {
 namespace deformation {
 
 /*!
-  The weights of the samples at a point are found from the nearest site: the candidates are the
-  samples in the rings around its region. The weights are those of a point of the session at the
-  same position. The object is built once per rest shape, and needs 40 bytes per site. Const
-  functions may run concurrently. O(log n) per point.
+  Blends the maps of the samples nearest to a point. The candidates are the samples in the rings
+  around the region of the site nearest to the point. The weights equal those of a point of the
+  session at the same position.
+
+  The object is built once per rest shape, and needs 40 bytes per site. `sample_of_site` must
+  outlive it. Const functions may run concurrently. O(log n) per point for n sites.
 */
 class Point_carrier
 {
@@ -50,6 +52,7 @@ public:
   Point_carrier(const Point_carrier&) = delete;
   Point_carrier& operator=(const Point_carrier&) = delete;
 
+  /// Returns the index of the site nearest to `point`.
   std::size_t nearest_site(const Vec3& point) const
   {
     thread_local std::vector<neighborhood::Nearest_neighbors::Neighbor> found;
@@ -57,7 +60,8 @@ public:
     return found.front().index;
   }
 
-  /// Returns the blended map at `point`, whose nearest site is `site`.
+  /// Returns the blended map at `point`, whose nearest site is `site`. `maps` are those of all
+  /// samples.
   Affine_map map_at(const Vec3& point, std::size_t site, const std::vector<Affine_map>& maps) const
   {
     thread_local std::vector<internal::Sample_candidate> nearest;

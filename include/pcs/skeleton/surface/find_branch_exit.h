@@ -16,18 +16,21 @@
 namespace pcs {
 namespace skeleton {
 
-/// The exit of a branch from its parent.
+/// The position where the axis of a branch passes through the surface of its parent.
 struct Branch_exit
 {
-  bool is_there = false;
-  double at = 0, half = 0; ///< arc length on the parent, half length of the footprint along it
-  double start = 0;        ///< arc length of the first ring of the branch; < 0: no surface
-  double radius = 0;       ///< of the branch
-  Vec3 point = Vec3::Zero(), direction = Vec3::Zero(), normal = Vec3::Zero();
+  bool is_there = false;     ///< otherwise only `start` is valid
+  double at = 0;             ///< arc length on the axis of the parent [L]
+  double half = 0;           ///< half the length of the footprint along that axis [L]
+  double start = 0;          ///< arc length of the first ring of the branch; < 0: no surface [L]
+  double radius = 0;         ///< of the branch [L]
+  Vec3 point = Vec3::Zero(); ///< on the axis of the branch [L]
+  Vec3 direction = Vec3::Zero(); ///< unit vector along the branch, limited by `steepest`
+  Vec3 normal = Vec3::Zero();    ///< outward unit normal of the parent
 };
 
-/// Follows the axis of a branch to the surface of its parent. `below` is the line of the parent, or
-/// null for a separate branch.
+/// Finds the exit of a branch by bisection along its axis. `below` is the axis of the parent, or
+/// null for a branch without parent. O(n m) for n sections of the branch and m of the parent.
 inline Branch_exit
 find_branch_exit(const Section_line& line, const Section_line* below, const Surface_options& rules)
 {
@@ -65,7 +68,7 @@ find_branch_exit(const Section_line& line, const Section_line* below, const Surf
   normal -= normal.dot(axis) * axis;
   e.normal =
       normal.norm() > 1e-9 * at.radius ? Vec3(normal.normalized()) : Vec3(axis.unitOrthogonal());
-  // limits the angle of flat branches, whose footprint would extend far along the parent
+  // branches nearly parallel to their parent would have very long footprints
   const Vec3 d = line.direction(high);
   const double sine = std::max(rules.steepest, d.dot(e.normal));
   Vec3 flat = d - d.dot(e.normal) * e.normal;

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The rows of a table of cylinders, by the names of its columns.
+// Reads the rows of a table of cylinders. Columns are identified by their names.
 
 #ifndef PCS_IO_INTERNAL_CYLINDERS_CYLINDER_TABLE_H
 #define PCS_IO_INTERNAL_CYLINDERS_CYLINDER_TABLE_H
@@ -27,7 +27,7 @@ namespace pcs {
 namespace IO {
 namespace internal {
 
-/// Columns of a table of cylinders. Three columns of a vector follow each other.
+/// Columns of a table of cylinders. The three columns of a vector are consecutive.
 enum Cylinder_column {
   column_start,
   column_axis = column_start + 3,
@@ -65,7 +65,7 @@ inline std::string plain_column_name(std::string_view name)
   return plain;
 }
 
-//! returns the first of the columns that a name denotes and their number, 0 for other names
+//! returns the first column that a name denotes, and the number of its columns; 0: unknown name
 inline std::pair<std::size_t, std::size_t> columns_of_name(std::string_view name)
 {
   const std::string plain = plain_column_name(name);
@@ -81,7 +81,7 @@ inline std::pair<std::size_t, std::size_t> columns_of_name(std::string_view name
           (prefix[1] != '\0' && plain == std::string(prefix) + "123"[k])) // not s1, a1
         return {first + k, 1};
   for (const auto& [synonym, first, number] :
-       {std::make_tuple("startpoint", column_start, 3), // TreeQSM names vectors once
+       {std::make_tuple("startpoint", column_start, 3), // in TreeQSM, one name for three columns
         std::make_tuple("axisdirection", column_axis, 3),
         std::make_tuple("length", column_length, 1),
         std::make_tuple("radius", column_radius, 1),
@@ -124,7 +124,7 @@ inline std::vector<std::string_view> split_at(char separator, std::string_view l
   }
 }
 
-//! reads the first line that is neither blank nor a comment; false at the end of the file
+//! reads the next line that is neither blank nor a comment; `false` at the end of the file
 inline bool read_table_line(Input_file& file, std::string_view& line)
 {
   while (file.read_line(line)) {
@@ -171,7 +171,7 @@ public:
     require(column_parent);
     if (!has_vector(column_end) && !(has_vector(column_axis) && has(column_length)))
       m_file.fail_at_line(
-          "there is no end of the cylinders, expected the columns endX, endY, endZ, "
+          "the ends of the cylinders are missing, expected the columns endX, endY, endZ, "
           "or axisX, axisY, axisZ and length");
   }
 
@@ -208,8 +208,8 @@ private:
   {
     if (!has(column))
       m_file.fail_at_line(std::string("there is no column '") + cylinder_columns[column] +
-                          "', expected start, radius and parent of the cylinders, and their end "
-                          "or axis and length");
+                          "', expected the start, radius and parent of the cylinders, and either "
+                          "their end or their axis and length");
   }
 
   const Input_file& m_file;
@@ -219,18 +219,20 @@ private:
   std::vector<std::string_view> m_words;
 };
 
+/// One row of the table.
 struct Cylinder
 {
-  std::array<double, 3> start{}, end{};
-  double radius = 0;
-  std::int64_t branch = 0;
+  std::array<double, 3> start{}, end{}; ///< [L]
+  double radius = 0;                    ///< [L]
+  std::int64_t branch = 0;              ///< id, 0 without a column of branches
 };
 
+/// All rows of the table.
 struct Cylinder_rows
 {
-  std::vector<Tree_row> rows;
+  std::vector<Tree_row> rows; ///< ids of each cylinder and its parent
   std::vector<Cylinder> cylinders;
-  bool has_branches = false;
+  bool has_branches = false; ///< whether there is a column of branches
 };
 
 inline double squared_distance(const std::array<double, 3>& a, const std::array<double, 3>& b)
@@ -265,8 +267,8 @@ inline Cylinder cylinder_of_line(const Input_file& file, const Cylinder_header& 
 }
 
 /*
-  Replaces the parents of cylinders without a parent by `no_parent`. With a column of ids, these
-  have an id that no cylinder has, -1 or 0; without, cylinders are numbered from 1, and 0 is none.
+  Replaces the parent 0 by `no_parent`, unless a cylinder has the id 0. Without a column of ids,
+  cylinders are numbered from 1.
 */
 inline void mark_roots(Cylinder_rows& table)
 {
@@ -279,8 +281,8 @@ inline void mark_roots(Cylinder_rows& table)
 }
 
 /*
-  Makes cylinders that begin in the first root cylinder its children: branches at the root have no
-  parent cylinder in some tables.
+  Makes a root cylinder a child of the first one if the distance of their starts is at most the
+  radius of the first. In some tables, branches at the root have no parent.
 */
 inline void join_roots(Cylinder_rows& table)
 {

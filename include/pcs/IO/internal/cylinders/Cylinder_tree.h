@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The skeleton of a tree of cylinders.
+// Conversion of the cylinders of a tree to a skeleton.
 
 #ifndef PCS_IO_INTERNAL_CYLINDERS_CYLINDER_TREE_H
 #define PCS_IO_INTERNAL_CYLINDERS_CYLINDER_TREE_H
@@ -18,8 +18,9 @@ namespace IO {
 namespace internal {
 
 /*
-  Returns for each cylinder the one that continues its branch, or `npos`: from the column of
-  branches, or from `assign_branches()` if there is none or its branches are not chains.
+  Returns the next cylinder on the branch of each cylinder, `npos` for the last one. The branches
+  are those of the table. Without branches in the table, or if these are not chains,
+  `assign_branches()` determines them.
 */
 template <class Kernel>
 std::vector<std::size_t> continuing_cylinders(const std::vector<Cylinder>& cylinders,
@@ -75,13 +76,13 @@ public:
   }
 
   const Tree_skeleton<Kernel>& tree() const { return m_tree; }
-  //! returns the cylinder that ends at each node, `npos` for first nodes of branches
+  //! returns the cylinder that ends at each node, `npos` for the first nodes of branches
   const std::vector<std::size_t>& cylinder_of_node() const { return m_cylinder_of_node; }
 
 private:
   using FT = typename Kernel::FT;
 
-  //! returns the cylinders so that parents precede their children
+  //! returns the indices of all cylinders, parents before their children
   std::vector<std::size_t> order() const
   {
     std::vector<std::vector<std::size_t>> children(m_cylinders.size());
@@ -136,9 +137,9 @@ private:
 
   const std::vector<Cylinder>& m_cylinders;
   const std::vector<std::size_t>& m_parents;
-  std::vector<std::size_t> m_next;         // of each cylinder, in its branch
+  std::vector<std::size_t> m_next;         // next cylinder on the branch of each cylinder
   std::vector<std::size_t> m_start, m_end; // nodes of each cylinder
-  std::vector<std::size_t> m_behind;       // node behind each node in its branch
+  std::vector<std::size_t> m_behind;       // next node on the branch of each node
   std::vector<std::size_t> m_cylinder_of_node;
   Tree_skeleton<Kernel> m_tree;
 };

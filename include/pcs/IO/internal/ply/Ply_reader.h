@@ -26,7 +26,7 @@ namespace internal {
 
 /*
   Scalar properties of the element `vertex` become columns. List properties and other elements are
-  skipped, or kept on request; a file in which they are incomplete is refused.
+  kept on request, otherwise skipped. In both cases, the file must contain them completely.
 */
 class Ply_reader : public Format_reader
 {
@@ -90,12 +90,12 @@ private:
         m_file.fail_at_line("the element 'vertex' has no scalar property '" + std::string(name) +
                             "'");
     warn_of_omissions();
-    // text is converted to the native byte order when it is parsed
+    // values parsed from text have the native byte order
     if (!is_ascii())
       m_layout.is_big_endian = m_header.storage == Ply_storage::big_endian;
   }
 
-  //! warns of other elements and of lists, which are not read
+  //! warns of the lists and elements that are left out
   void warn_of_omissions()
   {
     if (m_faces)
@@ -112,7 +112,7 @@ private:
                                     std::to_string(element.count) + " rows is left out");
   }
 
-  //! checks that no count exceeds the size of the file, before memory is allocated
+  //! checks before memory is allocated that the file can hold the declared number of rows
   void check_sizes() const
   {
     // the last line of a text file may lack a line break
@@ -196,7 +196,7 @@ private:
     end_list(p);
   }
 
-  //! reads a scalar or an entry of a list that is kept; `start` is the position for an error
+  //! reads a scalar or an entry of a list that is kept; errors name the byte `start`
   void read_entry(const Ply_element& element, const Ply_property& p, std::uint64_t start)
   {
     std::array<unsigned char, 8> bytes{};
@@ -213,7 +213,7 @@ private:
                             "' has a negative length or more entries than the file can hold");
   }
 
-  //! reads an element besides the vertices
+  //! reads an element other than the vertices
   void read_element(const Ply_element& element)
   {
     const std::uint64_t row = element.smallest_row(m_header.storage);

@@ -103,7 +103,7 @@ private:
       }
   }
 
-  //! whether the rows are an element of their own, apart from vertices and faces
+  //! whether the rows are an element other than the vertices and faces
   bool is_element(const Element_rows& rows) const
   {
     return &rows != m_lists && &rows != m_values_of_faces;
@@ -153,7 +153,7 @@ private:
     }
   }
 
-  //! appends the values of the row at `begin`; returns its end
+  //! appends the values of the row that begins at byte `begin`; returns the end of the row
   std::size_t append_values(const Element_rows& rows, std::size_t begin)
   {
     return *for_each_value(rows, begin, [&](Scalar_type type, const unsigned char* bytes) {

@@ -39,7 +39,7 @@ inline std::string_view without_quotes(std::string_view word)
   return word;
 }
 
-//! whether the word represents a value that was not measured; an empty word does
+//! whether the word means a missing value: it is empty, or for example `NA`
 inline bool is_missing(std::string_view word)
 {
   word = without_quotes(word);
@@ -65,8 +65,8 @@ inline bool has_decimal_comma(std::string_view word)
 }
 
 /*!
-  Converts a word of a column of numbers: missing values are NaN, numbers may be quoted. A decimal
-  comma is possible unless the comma separates columns.
+  Converts a word to a number. Missing values become NaN. Numbers may be quoted, and may have a
+  decimal comma if `is_comma_decimal`.
 */
 inline Parse_result parse_table_number(std::string_view word, bool is_comma_decimal, double& value)
 {
@@ -92,7 +92,7 @@ inline bool is_table_number(std::string_view word, bool is_comma_decimal)
          parse_table_number(word, is_comma_decimal, value) != Parse_result::not_a_number;
 }
 
-//! removes the next word of a line with blanks and tabs between words; quoted blanks do not count
+//! removes and returns the first word of a line; blanks and tabs separate words unless quoted
 inline std::string_view next_table_word(std::string_view& line)
 {
   const std::string_view rest = trim(line);
@@ -106,8 +106,8 @@ inline std::string_view next_table_word(std::string_view& line)
 }
 
 /*!
-  Splits a line into words. The separator ' ' represents any number of blanks and tabs; between
-  other separators, words may be empty. Separators in quotation marks do not count.
+  Splits a line into words. The separator ' ' represents any number of blanks and tabs. Between
+  other separators, words may be empty. Quoted separators do not split words.
 */
 inline void split_table_line(std::string_view line, char separator, Table_words& words)
 {
@@ -131,7 +131,7 @@ inline void split_table_line(std::string_view line, char separator, Table_words&
   }
 }
 
-//! whether the words between blanks are numbers and some of them have a decimal comma
+//! whether blanks separate at least three words, with decimal commas and without other commas
 inline bool are_blanks_between_decimal_commas(std::string_view line)
 {
   Table_words words;
@@ -146,8 +146,11 @@ inline bool are_blanks_between_decimal_commas(std::string_view line)
 }
 
 /*!
-  Returns the separator of a line: a semicolon; otherwise a comma, unless the commas are decimal;
-  otherwise a tab if there are no blanks between words as well; otherwise any number of blanks.
+  Returns the separator of a line, the first of this list that applies:
+  - a semicolon, if the line has one;
+  - a comma, if the line has one, unless the commas are decimal;
+  - a tab, if it separates at least three words, and no number is followed by a blank;
+  - otherwise ' ', which represents any number of blanks and tabs.
 */
 inline char find_separator(std::string_view line)
 {
@@ -165,7 +168,7 @@ inline char find_separator(std::string_view line)
   return words.size() >= 3 && !has_blanks ? '\t' : ' ';
 }
 
-//! removes blanks at both ends, and tabs unless they separate columns that may be empty
+//! removes blanks at both ends; also tabs, unless they separate columns, which may be empty
 inline std::string_view trim_table_line(std::string_view line, char separator)
 {
   if (separator != '\t')
