@@ -125,8 +125,13 @@ private:
   \brief writes the correspondences of two trees as text; `read_correspondences()` restores them
       exactly.
 
-  The file is complete or absent.
+  The file is written completely or not at all.
+
+  \param path name of the file
+  \param c the correspondences
   \throws pcs::IO_error when the file cannot be written
+  \par Complexity
+  Linear in the size of the correspondences.
 */
 inline void write_correspondences(const std::string& path, const Orl_correspondences& c)
 {

@@ -26,10 +26,16 @@ namespace IO {
   \ingroup PkgPcsIORef
   \brief writes a triangle mesh in the format of the file extension, `.ply` or `.obj`.
 
-  PLY is binary, with coordinates in double precision. The file is complete or absent.
+  PLY is binary, with coordinates in double precision. The file is written completely or not at
+  all.
 
+  \param path name of the file
+  \param points the vertices [L]
+  \param triangles the indices of three vertices each; not checked, and below 2^31 for PLY
   \throws pcs::IO_error when the file cannot be written or has another extension
   \throws pcs::Invalid_input when a coordinate is not finite
+  \par Complexity
+  Linear in the number of vertices and triangles.
 */
 template <class Point>
 void write_mesh(const std::string& path,

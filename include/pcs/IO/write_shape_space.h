@@ -207,8 +207,13 @@ private:
   \brief writes the result of `Orl_shape_space::data()` as text; `read_shape_space()` restores it
       exactly.
 
-  The file is complete or absent.
+  The file is written completely or not at all.
+
+  \param path name of the file
+  \param space the data of a space
   \throws pcs::IO_error when the file cannot be written
+  \par Complexity
+  Linear in the size of the data.
 */
 inline void write_shape_space(const std::string& path, const Orl_space_data& space)
 {

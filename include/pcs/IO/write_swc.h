@@ -74,12 +74,17 @@ void write_swc(const std::string& path,
   \brief writes any graph that is a tree to an SWC file.
 
   Ids begin with 1; parents precede their children. Numbers have as many digits as required to read
-  them back unchanged. The file is complete or absent. The type of all nodes is 0.
+  them back unchanged. The type of all nodes is 0. The file is written completely or not at all.
 
   \tparam Graph a model of `boost::VertexListGraph` and `boost::IncidenceGraph` with edges from
           parent to child, whose vertices are the numbers `0, ..., n - 1`
   \tparam PointMap a readable property map from vertices to points with `x()`, `y()`, `z()`
   \tparam RadiusMap a readable property map from vertices to numbers
+  \param path name of the file
+  \param graph the tree, with `n` nodes
+  \param root the root of the tree
+  \param point_map the position of each node [L]
+  \param radius_map the radius of each node, `>= 0` [L]
   \throws pcs::IO_error when the file cannot be written
   \throws pcs::Invalid_input when the graph is not a tree with the root `root`, a number is not
           finite, or a radius is negative
@@ -100,8 +105,11 @@ void write_swc(const std::string& path,
   \ingroup PkgPcsIORef
   \brief writes a tree skeleton to an SWC file.
 
-  The format is the same, except that the type of a node is 5 plus the order of its branch. Types
-  from 5 on are user-defined in SWC. The type is 0 for nodes without a branch.
+  Format, errors and cost are those of the first overload, except for the types: the type of a node
+  is 5 plus the order of its branch, or 0 without a branch. Types from 5 on are user-defined in SWC.
+
+  \param path name of the file
+  \param tree a tree with positions and radii [L]
 */
 template <class Kernel>
 void write_swc(const std::string& path, const Tree_skeleton<Kernel>& tree)

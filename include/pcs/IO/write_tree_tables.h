@@ -157,7 +157,7 @@ void write_cylinders(const std::string& path, const Tree_skeleton<Kernel>& tree)
   piece. `area` is that of the cylinders. `volume` is that of the frusta between the nodes, as in
   `Skeleton_report::total`; it is slightly larger than that of the cylinders. In another
   unit than the metre, `volume` is 1000 times the volume, and other values are in that unit. The
-  file is complete or absent.
+  file is written completely or not at all.
 
   \param path name of the file
   \param tree a tree with branches
@@ -203,7 +203,7 @@ void write_branches(const std::string& path,
   `DBHqsm` the diameter of the trunk at the path length `breast_height` from the root, `NA` if the
   trunk is shorter. Standard errors follow in the units of their values: `TotalVolume_error,
   TrunkVolume_error, TreeHeight_error, TrunkLength_error, TotalLength_error, DBHqsm_error`; `NA` if
-  unknown. The file is complete or absent.
+  unknown. The file is written completely or not at all.
 
   \param path name of the file
   \param tree a tree with branches
