@@ -161,11 +161,11 @@ public:
         \nptype `Transport_options`
       \np{alignment} whether the second of two trees may be rotated about the vertical
         \nptype `Orl_alignment`
-        \npdefault `as_given`; with `rotate_about_up`, `yaw` of the report is the angle
+        \npdefault `as_given`; with `rotate_about_up`, the report contains the angle as `yaw`
       \np{up_direction} the vertical
         \nptype a vector with `x()`, `y()`, `z()`, finite and not null
         \npdefault `(0, 0, 1)`
-      \np{orientation} how orientations are measured
+      \np{orientation} frame in which the orientations of edges are measured
         \nptype `Orl_orientation`
         \npdefault `gauge_fixed`; `world_axes` is the published one
       \np{virtual_direction} direction of a branch in a tree that lacks it
@@ -179,25 +179,28 @@ public:
           trees to a reference tree with median coordinates
         \nptype an integer, `>= 1`
         \npdefault `3`
-      \np{points_of} for more than two trees: a tree. The points of all branches that it has are
-          taken from its scan
+      \np{points_of} for more than two trees: the tree whose scan supplies the points of all
+          branches that it has
         \nptype `Handle`
         \npdefault none: for each branch, the tree with the most points on it
       \np{callback} progress in [0, 1]; `false` cancels
         \nptype any `bool(double)`
     \npend
     \return a report; with `Status::cancelled` the space is unchanged
-    \throws pcs::Invalid_input unless at least two trees were added
+    \throws pcs::Invalid_input if fewer than two trees were added, the space was restored, or a
+            parameter is out of range
     \par Complexity
     For two trees, the time for matching branches is about proportional to the number of pairs of
-    branches on the same level. For more trees, each tree takes this time in each round. The time
-    for points is \f$O(n \log n)\f$ in practice.
+    branches of the same order. For more trees, each tree takes this time in each round. The time
+    for n points is \f$O(n \log n)\f$ in practice.
   */
   template <class NamedParameters = parameters::Default_named_parameters>
   Orl_report build(const NamedParameters& np = NamedParameters())
   {
     const char* const caller = "pcs::Orl_shape_space::build()";
-    pcs::internal::check(!m_state.is_restored, caller, "the space was restored, it is built");
+    pcs::internal::check(!m_state.is_restored,
+                         caller,
+                         "a restored space is already built; add the trees to a new one");
     const shape_space::Build_options options =
         shape_space::read_build_options(np, m_state.inputs.size(), caller);
     std::function<bool(double)> callback;

@@ -84,8 +84,8 @@ public:
   /*!
     Reads the points, finds neighbours and samples. O(n log n).
 
-    \param points at least two different positions; must outlive this object
-    \param np
+    \param points points at two or more different positions [L]; must outlive this object
+    \param np named parameters, listed below
     \npbegin
       \np{point_map} where a position is read and written
         \nptype model of `ReadWritePropertyMap`, key: element of `points`, value: a point type
@@ -93,17 +93,17 @@ public:
       \np{normal_map} where a normal is read and written; normals keep their length
         \nptype model of `ReadWritePropertyMap`, key: element of `points`, value: a vector type
         \npdefault none: normals are not deformed
-      \np{vector_map} vectors `v`, such as tangents, that the deformation gradient `G` maps to `G v`
+      \np{vector_map} vectors `v`, such as tangents; the deformation gradient `G` maps them to `G v`
         \nptype model of `ReadWritePropertyMap`, key: element of `points`, value: a vector type
         \npdefault none
-      \np{tensor_map} tensors `T`, such as covariances of splats, that are mapped to `G T G^T`
+      \np{tensor_map} tensors `T`, such as covariances of splats; they are mapped to `G T G^T`
         \nptype the same, value: `Eigen::Matrix<FT, 3, 3>`
         \npdefault none
-      \np{number_of_samples} samples for which the non-linear problem is solved; limited to the
-        number of points [count]
+      \np{number_of_samples} number of samples for which the non-linear problem is solved, at most
+        the number of points [count]
         \nptype integer, `> 0`
         \npdefault `default_number_of_samples`
-      \np{number_of_neighbors} nearest neighbours that a point is linked to [count]
+      \np{number_of_neighbors} nearest neighbours to which a point is linked [count]
         \nptype integer, 2 to 60
         \npdefault `default_number_of_neighbors`
       \np{number_of_sample_neighbors} nearest samples whose maps are blended at a point [count]
@@ -124,11 +124,12 @@ public:
       \np{tolerance} iterations end when the energy decreases by less than this fraction [-]
         \nptype floating point, `>= 0`
         \npdefault `0.05`
-      \np{stiffness} bending stiffness relative to stretching stiffness. Its effect is independent
-        of the number of points, and of the number of samples from 2,000 on. [-]
+      \np{stiffness} bending stiffness relative to stretching stiffness [-]. Its effect does not
+        depend on the number of points. With 2,000 samples or more, it does not depend on the number
+        of samples either
         \nptype floating point, 0.001 to 1000
         \npdefault 1
-      \np{poisson_ratio} transverse contraction under stretch; 0.5 like rubber, 0 like cork [-]
+      \np{poisson_ratio} transverse contraction relative to axial extension; 0.5: incompressible [-]
         \nptype floating point, -1 to 0.5
         \npdefault 0
       \np{do_preserve_volume} whether springs through the interior of closed surfaces preserve their
@@ -138,8 +139,8 @@ public:
         \npdefault `true`
       \np{region_of_interest} indices of the points that may move. All other points, and points that
         coincide with one of them, remain bitwise unchanged.
-        \nptype range of integers, or of elements of `points` with `operator<` (copied; use
-            `std::cref` for large ones)
+        \nptype range of integers, or of elements of `points` with `operator<`; copied unless it is
+            passed by `std::cref()`
         \npdefault all points
       \np{callback} called on this thread with a value that grows from 0 to 1; `false` stops, and no
         point is written. The call with 1 comes before the points are written.

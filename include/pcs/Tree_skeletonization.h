@@ -44,8 +44,8 @@ namespace pcs {
   axis, whose positions and radii are a robust least-squares fit to all of its points. Radii that
   the positions of the points do not determine are estimated from the number of points.
 
-  Each stage first runs the earlier stages that have not run yet; `extract()` runs all stages. The
-  result of each stage can be inspected.
+  Each stage first runs the preceding stages, unless they have run before. `extract()` runs all
+  stages. The result of each stage can be inspected.
 
   \tparam PointRange a model of `RandomAccessRange`; positions are read by the constructor only,
           and the elements are keys of the property maps that `extract()` writes
@@ -96,10 +96,10 @@ private:
 
 public:
   /*!
-    Reads the points and the hints; no stage runs yet. O(n).
+    Reads the points and the named parameters, without running a stage. O(n) for n points.
 
-    \param points at least `lowest_number_of_scan_points` distinct points
-    \param np
+    \param points at least `lowest_number_of_scan_points` distinct points [L]
+    \param np named parameters, listed below
     \npbegin
       \np{point_map} where a position is read
         \nptype model of `ReadablePropertyMap`, key: element of `points`, value: a point type
@@ -110,17 +110,17 @@ public:
       \np{root_position} a position near the foot of the trunk [L]
         \nptype a point with `x()`, `y()`, `z()`
         \npdefault none: a stem near the lower end of the cloud is detected
-      \np{do_register_stations} whether the points of each scanner station are moved by millimetres
-          so that the branches in all stations coincide. Stations are given by `station_map`, or
-          detected by their angular scan grids
+      \np{do_register_stations} whether residual registration errors of a few millimetres are
+          corrected: the points of each scanner station are moved until the branches of all stations
+          coincide. Stations are given by `station_map`, or detected by their angular scan grids
         \nptype `bool`
         \npdefault `true`
       \np{station_map} the station that measured a point; negative: unknown. If there are fewer than
           two stations or more than 100, scan grids are detected instead
         \nptype model of `ReadablePropertyMap`, key: element of `points`, value: an integer type
         \npdefault none
-      \np{scanner_positions} positions of the scanners [L], from which the radii of thin branches
-          are corrected for beam divergence
+      \np{scanner_positions} positions of the scanners [L]. They are used to correct the radii of
+          thin branches for beam divergence
         \nptype range of points with `x()`, `y()`, `z()`
         \npdefault none
       \np{beam_width} beam divergence [rad]; 0: no correction. Used with `scanner_positions`
@@ -145,15 +145,16 @@ public:
           are removed
         \nptype `bool`
         \npdefault `true`
-      \np{breast_height} height at which the diameter in the report is measured, and unit of the
-          size classes [L]
+      \np{breast_height} height above the root at which the diameter in the report is measured. The
+          limits of the size classes are proportional to it [L]
         \nptype floating point, `> 0`
         \npdefault `default_breast_height`, for scans in metres
-      \np{number_of_resamples} random subsets of the scan, with 90 % of the points but at most
-          40,000, whose skeletons give the standard deviations in `Skeleton_report::spread`. Each
-          subset takes as long as a scan of its size. If the subsets have at least half of the
-          points, the majority decides whether there are leaves, and a skeleton that differs from
-          most subsets is replaced by that of points displaced by a thousandth of their spacing
+      \np{number_of_resamples} number of random subsets of the scan whose skeletons give the
+          standard deviations in `Skeleton_report::spread` [count]. A subset has 90 % of the points,
+          but at most 40,000, and takes as long as a scan of its size. If the subsets have at least
+          half of the points, the majority of the scan and the subsets decides whether there are
+          leaves, and a skeleton that differs from most subsets is replaced by that of points
+          displaced by a thousandth of their spacing
         \nptype integer, 0 to 100
         \npdefault 0: the spread is not estimated
       \np{wood_map} whether a point may belong to a branch; others (leaves) are not used
@@ -181,8 +182,9 @@ public:
         \nptype model of `WritablePropertyMap`, key: element of `points`, value: `bool`
         \npdefault none
       \np{normal_map} written by `extract()`: outward unit normal of the branch at the point, the
-          null vector for points without a branch. If `Slice_options::has_normals`, the method
-          `sections` first reads the normals of the input from it; null vectors are unknown
+          null vector for points without a branch. If `Slice_options::has_normals` is set, the
+          method `sections` first reads the normals of the input from it, where null vectors are
+          unknown normals
         \nptype model of `WritablePropertyMap`, key: element of `points`, value: a vector type
         \npdefault none
       \np{node_point_map} where the position of a vertex of the result is written
@@ -197,8 +199,8 @@ public:
     \npend
 
     \throws Invalid_input if there are too few points, a coordinate is not finite or beyond 1e100, a
-            parameter is out of range, or the distance of the root or the given skeleton from the
-            bounding box of the points exceeds the diagonal of this box
+            parameter is out of range, or the root or the given skeleton is farther from the
+            bounding box of the points than the length of the diagonal of this box
   */
   explicit Tree_skeletonization(const PointRange& points,
                                 const NamedParameters& np = NamedParameters())

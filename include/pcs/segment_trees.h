@@ -172,7 +172,7 @@ void write_trees(const std::vector<skeleton::Vec3>& input,
   half the breast height. Two stems belong to the same tree if the horizontal distance of their feet
   is less than the sum of three radii of the thicker stem, a tenth of the breast height, and the
   height of the higher foot above the ground. Where crowns touch, an axis is assigned to the tree
-  that it most likely continues. The odds of distance, direction and radius are those by which
+  that it most likely continues. The likelihood depends on distance, direction and radius, as where
   `extract_tree_skeleton()` joins axes. A point without an axis is assigned to the tree whose foot
   has the smallest geodesic distance. Ground, walls and outliers remain unassigned, except for
   ground points at the foot of a stem. Plants lower than breast height are counted, but they are
@@ -187,11 +187,11 @@ void write_trees(const std::vector<skeleton::Vec3>& input,
   \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or
       `CGAL::Parallel_if_available_tag`
   \param points a model of `RandomAccessRange` with at least `lowest_number_of_scan_points`
-         distinct points
+         distinct points [L]
   \param point_tree_map a model of `WritablePropertyMap`, key: element of `points`, value: a type
-         that `std::size_t` converts to. Receives the index of the tree in the report, or `npos`;
+         to which `std::size_t` converts. Receives the index of the tree in the report, or `npos`;
          unchanged if the callback stopped the work
-  \param np
+  \param np named parameters, listed below
   \npbegin
     \np{point_map} where a position is read
       \nptype model of `ReadablePropertyMap`, key: element of `points`, value: a point type

@@ -32,9 +32,10 @@ namespace IO {
   file without them is read by its extension: pcd, ptx, obj, or text if it is xyz, txt, csv, asc,
   pts or pwn.
 
-  The reader is strict. Counts are compared with the size of the file before memory is allocated;
-  coordinates must be finite, other properties need not be; the file must end as its header states.
-  All violations throw `pcs::IO_error` with the file, the line or byte, and the expected content.
+  The reader checks its input. Counts are compared with the size of the file before memory is
+  allocated. Coordinates must be finite, other properties need not be. The file must end where its
+  header states. A violation throws `pcs::IO_error` with the file, the line or byte, and the
+  expected content.
 
   - PLY: ascii and binary of both byte orders. Scalar properties of `vertex` are read in their own
     type (`int64` and `uint64` are an extension). Lists and other elements, such as faces, are
@@ -44,7 +45,7 @@ namespace IO {
     or by the comment before the first row; coordinates may have names such as `Easting`,
     `y_coord`, `Height`. Otherwise the columns are `x`, `y`, `z`, `column_4`, `column_5`, ...
     Missing values (`NA`, `nan`, nothing) are NaN, but not in coordinates. Columns of text are left
-    out with a sentence in `Point_schema::warnings`. Decimal commas are read unless commas separate
+    out, with a warning in `Point_schema::warnings`. Decimal commas are read unless commas separate
     columns.
   - OFF, NOFF, COFF, CNOFF: `nx`, `ny`, `nz` and `red`, `green`, `blue`, `alpha`; faces are
     checked, and discarded unless `do_keep_faces` is set.
@@ -53,10 +54,10 @@ namespace IO {
     the file if it describes them, otherwise `extra_byte_0`, ...
     Header, VLRs and EVLRs are stored in `Point_schema::las`, in memory.
   - PCD: ascii, binary and binary_compressed, the last in memory. Fields are read in their own type;
-    `rgb` is `red`, `green`, `blue`. Points whose coordinates are NaN have no return and are left
-    out.
-  - PTX: the matrix of each scan is applied; `scan` is its index. Points 0 0 0 have no return and
+    `rgb` is `red`, `green`, `blue`. Points with NaN coordinates are beams without return. They
     are left out.
+  - PTX: the matrix of each scan is applied; `scan` is its index. Points at 0 0 0 are beams without
+    return. They are left out.
   - OBJ: vertices, with a weight or colours, and on request faces. Normals, textures and groups are
     discarded.
 

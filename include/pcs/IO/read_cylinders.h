@@ -22,10 +22,10 @@ namespace IO {
 
 /*!
   \ingroup PkgPcsIORef
-  \brief returns whether a file is a table of cylinders: its first line names a column of their
-         starts.
+  \brief returns whether a file is a table of cylinders, that is, whether its first line names a
+         column of start coordinates.
 
-  Comments (`#`) and blank lines before this line are skipped.
+  Comments (`#`) and blank lines before this line are skipped. Only lines up to this one are read.
 
   \throws pcs::IO_error when the file cannot be read
 */
@@ -65,8 +65,11 @@ inline bool is_cylinder_table(const std::string& path)
   Consecutive cylinders of a branch share a node, whose radius is the mean of theirs. The first
   cylinder of a branch begins at a node of its own, which is a child of the nearer end of the parent
   cylinder. Without branches in the table, or if they are not chains, branches are determined by
-  `assign_branches()`. A file with several trees is read as by `read_swc()`; a cylinder without
-  parent that begins within the radius of the first one belongs to its tree.
+  `assign_branches()`.
+
+  A file with several trees is read as by `read_swc()`. A cylinder without parent belongs to the
+  tree of the first such cylinder if the distance of their starts is at most the radius of the
+  first.
 
   \tparam Kernel a kernel of CGAL
   \param path name of the file

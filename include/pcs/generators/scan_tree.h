@@ -47,13 +47,16 @@ Scan_options read_scan_options(const NamedParameters& np)
   \brief simulates a terrestrial laser scan of a tree.
 
   The branches become triangulated tubes, with elliptic sections of exact area and with bark. Every
-  station emits beams in regular steps of azimuth and elevation; only the first surface is hit,
-  which causes occlusion. A beam consists of three rays. If their ranges differ by more than
-  `ghost_gap`, the fraction `ghost_share` of such beams gives a ghost at a random range between
-  them. If only a ray beside the central one hits, the fraction `edge_share` of such beams gives a
-  point in the direction of the central ray. Thin twigs therefore appear too thick, as in real
-  scans. Ranges are noisy, each station has a small shift (the error of registration), and outliers
-  are distributed over the bounding box.
+  station emits beams in regular steps of azimuth and elevation. Only the first surface is hit,
+  which causes occlusion. A beam consists of three rays:
+
+  - Of the beams whose ranges differ by more than `ghost_gap`, the fraction `ghost_share` gives a
+    ghost at a random range between them.
+  - Of the beams of which only a lateral ray hits, the fraction `edge_share` gives a point in the
+    direction of the central ray. Thin twigs therefore appear too thick, as in real scans.
+
+  Ranges are noisy. Each station has a small shift, the registration error. Outliers are distributed
+  over the bounding box.
 
   Options of `Virtual_scanner`: wind that moves twigs between stations, leaves, ground, posts,
   one-sided visibility, and thinning.

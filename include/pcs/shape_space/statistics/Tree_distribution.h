@@ -43,7 +43,7 @@ namespace shape_space {
   `S_b = sum_t D_tb D_tb^T / (m_b - 1)` and `P = sum_i P_i P_i^T`, the covariances are
 
       (1 - a) S_b + a ((m_b - 1) S_b + 2 P) / (m_b + 1)               within a branch,
-      (1 - a) sum_t D_tb D_tc^T / sqrt((m_b - 1) (m_c - 1))           between two branches,
+      (1 - a) sum_t D_tb D_tc^T / sqrt((m_b - 1) (m_c - 1))           between two branches.
 
   These covariances do not include the truncation of the normal numbers and the factor `spread` of
   `z`, which `draw()` applies.
@@ -54,7 +54,7 @@ namespace shape_space {
   different branches, converted to lengths [L]:
 
       a = sum V_ij / sum s_ij^2,   s_ij = sum_t z_ti z_tj / n,                         in [0, 1]
-      V_ij = (sum_t (z_ti z_tj)^2 / n - s_ij^2) / (n - 1),
+      V_ij = (sum_t (z_ti z_tj)^2 / n - s_ij^2) / (n - 1).
 
   For fewer than three trees, `a` is 0.5. Branch `b` with the parent `p` exists with the probability
   `m_b / m_p` if `p` exists. Time: O(n^2) times the number of coordinates. Each random tree takes
