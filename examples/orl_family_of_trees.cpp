@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A family of trees: mean, modes of variation and new trees, with points in the same order.
+// A family of trees: mean, modes of variation and random trees, with points in the same order.
 
 #include <pcs/Orl_shape_space.h>
 #include <pcs/compare_trees.h>
@@ -57,8 +57,8 @@ int main()
   for (std::uint64_t i = 0; i < 3; ++i) {
     const pcs::Orl_tree tree = pcs::sample_tree(space, distribution, 42, i);
     space.points(tree, points);
-    std::cout << "new tree " << i << ": " << pcs::measure_shape(space, tree).height << " m high, "
-              << points.size() << " points\n";
+    std::cout << "random tree " << i << ": " << pcs::measure_shape(space, tree).height
+              << " m high, " << points.size() << " points\n";
     shortest = std::min(shortest, pcs::measure_shape(space, tree).height);
   }
   //! [samples]

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// New trees of a family: within the range of the inputs, reproducible, with points.
+// Random trees of a family: within the range of the inputs, reproducible, with points.
 
 #include <pcs/IO/read_txtskl.h>
 #include <pcs/Orl_shape_space.h>
@@ -124,7 +124,7 @@ BOOST_AUTO_TEST_CASE(new_trees_of_a_few_are_within_them_by_order)
 BOOST_AUTO_TEST_CASE(branches_keep_their_slant)
 {
   // The branches of the input trees have equal slants and random azimuths about an upright trunk.
-  // The slants of new trees are equal to these.
+  // The slants of random trees are equal to these.
   std::mt19937 random(8);
   std::normal_distribution<double> normal;
   std::vector<Tree> trees;
@@ -329,7 +329,7 @@ BOOST_AUTO_TEST_CASE(points_follow_their_branches_in_one_order)
     number_of_own += source[i] == 2;
   }
   BOOST_TEST(number_of_own == scans[2].size());
-  // Points of a new tree lie near its axes, within their radii.
+  // Points of a random tree lie near its axes, within their radii.
   const pcs::Orl_tree drawn = pcs::sample_tree(space, 3);
   space.points(drawn, points);
   Tree skeleton;

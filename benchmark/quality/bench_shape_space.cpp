@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Families of trees: seconds, correlation of modes with known parameters, agreement of new trees
-// with the inputs, seconds per new tree.
+// Families of trees: seconds, correlation of modes with known parameters, agreement of random trees
+// with the inputs, seconds per random tree.
 
 #include <pcs/IO/read_txtskl.h>
 #include <pcs/IO/write_points.h>
@@ -124,10 +124,11 @@ void run_group(const std::vector<std::string>& files, const std::string& folder)
     print("new", f);
     write(space, tree, folder, "sample_" + std::to_string(i));
   }
-  std::printf("%zu of 12 new trees are inside the range of the inputs, %zu of them in numbers and "
-              "angles of branches of each order as well\n",
-              number_inside,
-              number_alike);
+  std::printf(
+      "%zu of 12 random trees are inside the range of the inputs, %zu of them in numbers and "
+      "angles of branches of each order as well\n",
+      number_inside,
+      number_alike);
 }
 
 /// Leaves each tree out of the topology, then matches it to the mean of the others.
@@ -268,21 +269,21 @@ void run_speed(std::size_t number_of_points, std::size_t number_of_trees)
 
 int main(int argc, char** argv)
 {
-  CLI::App app("Families of trees: means, modes and new trees.");
+  CLI::App app("Families of trees: means, modes and random trees.");
   std::vector<std::string> files;
   std::string folder;
   std::size_t parameters = 0, points = 0, trees = 100;
   std::uint64_t seed = 1;
   bool is_left_out = false;
   app.add_option("files", files, ".txtskl skeletons of one group");
-  app.add_option("--output", folder, "write skeletons of means, modes and new trees here");
+  app.add_option("--output", folder, "write skeletons of means, modes and random trees here");
   app.add_flag("--left-out",
                is_left_out,
                "only the error of each tree with the modes of the others");
   app.add_option("--parameters", parameters, "number of virtual trees with two known parameters");
-  app.add_option("--seed", seed, "seed of virtual and new trees")->capture_default_str();
-  app.add_option("--points", points, "measure the time per new tree with this number of points");
-  app.add_option("--trees", trees, "number of new trees for --points");
+  app.add_option("--seed", seed, "seed of virtual and random trees")->capture_default_str();
+  app.add_option("--points", points, "measure the time per random tree with this number of points");
+  app.add_option("--trees", trees, "number of random trees for --points");
   CLI11_PARSE(app, argc, argv);
   try {
     if (!folder.empty())

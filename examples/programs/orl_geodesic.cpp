@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Program: computes trees between and beyond scanned trees, their mean, and new trees like them.
+// Program: computes trees between and beyond scanned trees, their mean, and similar random trees.
 
 #include "common/run_program.h"
 #include "common/up_direction.h"

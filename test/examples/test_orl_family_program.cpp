@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Tests the program orl_geodesic for families: means, modes, new trees, growth, changes, saved
+// Tests the program orl_geodesic for families: means, modes, random trees, growth, changes, saved
 // spaces, and invalid input.
 
 #include <pcs/IO/read_swc.h>

@@ -116,21 +116,21 @@ inline void declare_family(CLI::App& app, Options& o)
       ->check(CLI::IsMember({"branches", "metric"}))
       ->capture_default_str()
       ->group(group);
-  app.add_option("--sample", o.number_of_samples, "number of new trees: sample_0000.swc, ...")
+  app.add_option("--sample", o.number_of_samples, "number of random trees: sample_0000.swc, ...")
       ->check(CLI::Range(0, 10000))
       ->group(group);
-  app.add_option("--seed", o.seed, "random seed of new trees")
+  app.add_option("--seed", o.seed, "seed of the random trees")
       ->check(program::is_seed)
       ->check(CLI::Range(std::int64_t(0), std::numeric_limits<std::int64_t>::max()))
       ->capture_default_str()
       ->group(group);
   app.add_flag("--any-range",
                o.may_leave_range,
-               "new trees may be larger or smaller than all inputs")
+               "random trees may be larger or smaller than all inputs")
       ->group(group);
   app.add_option("--pipe-model",
                  o.pipe_exponent,
-                 "exponent of the pipe model for new trees: the sum of the children's radii to "
+                 "exponent of the pipe model for random trees: the sum of the children's radii to "
                  "this power is at most that of the parent; 2 to 2.5")
       ->check(CLI::Range(0.0, 10.0))
       ->group(group);
@@ -276,7 +276,7 @@ inline void check_effects(const Options& o)
   refuse(o.number_of_modes == 0, {"--mode-inner-product"}, "without --modes");
   refuse(o.number_of_samples == 0,
          {"--seed", "--any-range", "--pipe-model"},
-         "without --sample: no new trees are drawn");
+         "without --sample: no random trees are drawn");
   refuse(!o.do_growth, {"--times", "--frames", "--monotone"}, "without --growth");
 }
 

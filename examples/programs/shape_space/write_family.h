@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Means, modes, new trees, growth and changes of a family of trees, as files.
+// Means, modes, random trees, growth and changes of a family of trees, as files.
 
 #ifndef PCS_EXAMPLES_PROGRAMS_SHAPE_SPACE_WRITE_FAMILY_H
 #define PCS_EXAMPLES_PROGRAMS_SHAPE_SPACE_WRITE_FAMILY_H
@@ -75,7 +75,7 @@ inline void write_samples(const Space& space, const std::vector<Tree_file>& file
   options.pipe_exponent = o.pipe_exponent;
   const pcs::Orl_distribution distribution = pcs::learn_distribution(space);
   for (std::size_t i = 0; i < o.number_of_samples; ++i) {
-    line.show("new trees", static_cast<double>(i) / static_cast<double>(o.number_of_samples));
+    line.show("random trees", static_cast<double>(i) / static_cast<double>(o.number_of_samples));
     write_tree(space,
                pcs::sample_tree(space,
                                 distribution,

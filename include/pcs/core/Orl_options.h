@@ -174,7 +174,7 @@ enum class Branch_emergence {
 //! \ingroup PkgPcsShapeSpaceRef
 //! kind of mean
 enum class Tree_mean {
-  median, ///< least sum of distances, (4.16): unusual trees have no influence
+  median, ///< least sum of distances, (4.16): unusual trees have little influence
   frechet ///< least sum of squared distances, by coordinate
 };
 
@@ -187,7 +187,7 @@ enum class Mode_inner_product {
 };
 
 //! \ingroup PkgPcsShapeSpaceRef
-//! how new trees are drawn
+//! how random trees are drawn
 struct Tree_sampling_options
 {
   double truncation = 2.5; ///< largest score, in standard deviations [-]
