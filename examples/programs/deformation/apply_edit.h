@@ -54,7 +54,7 @@ public:
       names += (names.empty() ? "" : ", ") + name;
     fail("/property",
          "there is no property \"" + wanted->name + "\", the input has " +
-             (names.empty() ? "none besides x, y, z" : names));
+             (names.empty() ? "none except x, y, z" : names));
   }
 
   /// Throws if a listed index is not below `n`, the number of all points.

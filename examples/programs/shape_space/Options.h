@@ -167,7 +167,7 @@ extract_tree_skeleton, TreeQSM, SimpleForest, aRchi, rTwig); .txtskl with layers
 Without --skeleton, skeletons are extracted from the points; without --tree, only skeletons are
 made.
 
-SWC rows: id, type, x, y, z, radius, parent (-1: a root). Further columns and comments behind #
+SWC rows: id, type, x, y, z, radius, parent (-1: a root). Further columns and comments after #
 are ignored. Of a file with several roots, the tree with the most nodes is read, with a warning, or
 the one of --root-number.
 

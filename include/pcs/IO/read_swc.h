@@ -120,7 +120,7 @@ Swc_rows<Kernel> read_swc_rows(const std::string& path)
   \ingroup PkgPcsIORef
   \brief reads a tree skeleton from an SWC file: lines `id type x y z radius parent`.
 
-  Text behind `#` is a comment, blank lines are skipped, and further columns are ignored. Parents
+  Text after `#` is a comment, blank lines are skipped, and further columns are ignored. Parents
   may follow their children, and ids may have gaps. Nodes are numbered in the order of the file. The
   format does not contain branches. If its types are 5 plus an order, as `write_swc()` writes them,
   the branches are determined from the types, otherwise by `assign_branches()`. The format does not

@@ -30,7 +30,7 @@ public:
   virtual ~Format_reader() = default;
 
   /*!
-    Replaces the block by at most `max_rows` next rows; no rows indicate the end. The data behind
+    Replaces the block by at most `max_rows` next rows; no rows indicate the end. The data after
     the points are checked before the last rows are returned, so that a file whose points have all
     been returned is valid.
   */

@@ -73,7 +73,7 @@ protected:
     m_file.write(m_text);
   }
 
-  //! appends the values of a row, each with a separator behind it
+  //! appends the values of a row, each followed by a separator
   void append_row_as_text(const unsigned char* row,
                           char separator,
                           bool do_mark_floats,

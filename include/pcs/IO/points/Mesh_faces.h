@@ -60,7 +60,7 @@ struct Mesh_faces
   std::vector<std::uint32_t> vertices;
 
   //! Other values of a PLY file, which only PLY can hold: `vertex` has the lists of the vertices,
-  //! `face` the properties of the faces besides their corners. If there are no polygons, `face` is
+  //! `face` the properties of the faces without their corners. If there are no polygons, `face` is
   //! an element as any other.
   std::vector<Element_rows> elements;
 
@@ -144,7 +144,7 @@ inline void Mesh_faces::check() const
                             std::to_string(number_of_vertices) + " vertices");
   }
   if (begin != vertices.size())
-    throw Invalid_input("pcs::IO::Mesh_faces: there are vertices behind the last face");
+    throw Invalid_input("pcs::IO::Mesh_faces: there are vertices after the last face");
   for (const Element_rows& rows : elements) {
     internal::check_rows(rows);
     const bool is_of_faces = rows.name == "face" && !ends.empty();

@@ -26,7 +26,7 @@ namespace IO {
 
   Positions are stored as doubles for every type in the file. Every other property keeps its own
   type, so reading and writing a table changes only the points that the caller changes. A default
-  constructed table has no points and no properties besides `x`, `y`, `z`.
+  constructed table has no points and no properties other than `x`, `y`, `z`.
 
   The caller may change positions and the number of points through `points()`. The writers reject
   properties whose size differs from the number of points.
@@ -64,7 +64,7 @@ public:
   std::vector<std::string>& comments() { return m_schema.comments; }
   std::vector<std::string>& obj_info() { return m_schema.obj_info; }
 
-  //! returns the names of the properties besides `x`, `y`, `z`, in file order
+  //! returns the names of the properties other than `x`, `y`, `z`, in file order
   std::vector<std::string> property_names() const
   {
     std::vector<std::string> names;
@@ -74,7 +74,7 @@ public:
     return names;
   }
 
-  //! whether there is a property of that name, besides the coordinates
+  //! whether there is a property of that name other than a coordinate
   bool has_property(const std::string& name) const
   {
     return !is_coordinate_name(name) && m_schema.has(name);

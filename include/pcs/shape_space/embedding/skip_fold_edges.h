@@ -38,12 +38,12 @@ inline void mark_folds(const std::vector<Vec3>& direction,
 } // namespace internal
 
 /*!
-  Transports the frames of edges and branches behind a fold from the last edge before the fold.
+  Transports the frames of edges and branches beyond a fold from the last edge before the fold.
   `directions`: of the edges, for each tree; null for edges that the tree lacks.
 
   A fold of only one tree consists of two rotations by about pi, about axes that depend on noise or
   rounding. On the path between the trees, their interpolated product may be any rotation, so
-  everything behind a fold of a millimetre would have an arbitrary direction.
+  everything beyond a fold of a millimetre would have an arbitrary direction.
 */
 inline void skip_fold_edges(const std::vector<std::vector<Vec3>>& directions, Orl_layout& layout)
 {

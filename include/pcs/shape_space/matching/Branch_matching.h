@@ -178,7 +178,7 @@ private:
     return best;
   }
 
-  /// Returns the nodes behind the compared parts of two paths, or their tips.
+  /// Returns the nodes after the compared parts of two paths, or their tips.
   std::array<std::size_t, 2> compared_ends(std::size_t p1, std::size_t p2) const
   {
     const std::array<std::size_t, 2> last = m_energy.last_nodes(p1, p2);

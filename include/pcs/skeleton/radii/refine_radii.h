@@ -52,7 +52,7 @@ struct Radius_options
 
       sum_i w_i (n_i . y - x_i + r)^2 + hold W |y|^2,   w_i = 1 / (1 + (x_i / (far r_0))^2).
 
-  Bounded nodes count as inferred. O(points + nodes), besides the pipe model.
+  Bounded nodes count as inferred. O(points + nodes), without the pipe model.
 */
 template <class ConcurrencyTag>
 void refine_radii(const Scan& scan,

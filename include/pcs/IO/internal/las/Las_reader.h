@@ -23,7 +23,7 @@ namespace IO {
 namespace internal {
 
 /*
-  Reads LAS 1.0 to 1.4 with point formats 0 to 10. Header, VLRs and all data behind the points are
+  Reads LAS 1.0 to 1.4 with point formats 0 to 10. Header, VLRs and all data after the points are
   stored as bytes in the schema, so that they can be written again.
 */
 class Las_reader : public Format_reader
@@ -175,7 +175,7 @@ private:
     m_las->tail_position = m_first_point + count * length;
   }
 
-  //! returns the first byte of extended records or waveforms behind compressed points
+  //! returns the first byte of extended records or waveforms after compressed points
   std::uint64_t find_compressed_tail() const
   {
     const std::uint64_t waveforms = m_minor >= 3 ? header<std::uint64_t>(las_header::waveforms) : 0;

@@ -138,7 +138,7 @@ private:
     }
   }
 
-  //! updates the positions in the header that refer to data behind the points
+  //! updates the positions in the header that refer to data after the points
   void move_tail(std::uint64_t new_position)
   {
     const unsigned minor = m_las.header[las_header::version_minor];

@@ -48,7 +48,7 @@ public:
   //! whether the entries of the list are the corners of a face
   bool is_corner_list(const Ply_property& p) const { return &p == m_corners; }
 
-  //! adds the length of a list besides the corners; returns whether its type can represent it
+  //! adds the length of a list other than the corners; returns whether its type can represent it
   bool add_length(const Ply_element& element, const Ply_property& p, std::uint64_t length)
   {
     return dispatch(*p.count_type, [&](auto tag) {
@@ -61,7 +61,7 @@ public:
     });
   }
 
-  //! adds a scalar, or an entry of a list besides the corners
+  //! adds a scalar, or an entry of a list other than the corners
   void add_value(const Ply_element& element, Scalar_type type, const unsigned char* value)
   {
     std::vector<unsigned char>& bytes = m_rows[static_cast<std::size_t>(&element - m_begin)].bytes;

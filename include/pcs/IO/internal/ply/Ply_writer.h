@@ -222,7 +222,7 @@ private:
   bool m_is_count_known;
   std::size_t m_count_position = 0;
   const Element_rows* m_lists = nullptr;           // lists of the vertices, or null
-  const Element_rows* m_values_of_faces = nullptr; // values besides the corners, or null
+  const Element_rows* m_values_of_faces = nullptr; // values other than the corners, or null
   std::size_t m_position_in_lists = 0;             // of the next vertex [byte]
   Scalar_type m_length_type = Scalar_type::uint8;  // of the corners of a face
   std::string m_row;

@@ -145,7 +145,7 @@ private:
     }
   }
 
-  //! reads the words behind the keyword `f`
+  //! reads the words after the keyword `f`
   void read_face(std::string_view line)
   {
     const std::string text = whole_line(line);
