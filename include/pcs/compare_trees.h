@@ -41,6 +41,7 @@ using Branch_change = shape_space::Branch_change;
       \nptype `Orl_metric`
       \npdefault `sum`
   \npend
+  \throws pcs::Invalid_input for a space that was not built
   \par Complexity
   \f$O(n^2 e)\f$ for `n` trees of `e` edges.
 */
@@ -83,6 +84,8 @@ std::vector<double> distance_matrix(const Orl_shape_space<Kernel, ConcurrencyTag
   \npend
   \return the changes of all branches that at least one of the trees has, parents first
   \throws pcs::Invalid_input for a wrong handle, or a limit below 0
+  \par Complexity
+  Linear in the number of edges.
 */
 template <class Kernel,
           class ConcurrencyTag,

@@ -109,6 +109,7 @@ Deformation_report deform_once(PointRange& points, const NamedParameters& np, co
   \param points a model of `RandomAccessRange`, modified in place through `point_map`; it may be a
       temporary view such as `mesh.vertices()`
   \param handles range of `Deformation_handle`, at least one
+  \param np named parameters of `Point_set_deformation`
   \return a `Deformation_report`: status, counts, energies, seconds per stage
 */
 template <class ConcurrencyTag = CGAL::Parallel_if_available_tag,
@@ -139,6 +140,9 @@ Deformation_report deform_point_set(PointRange&& points,
   \ingroup PkgPcsDeformationRef
   \brief deforms `points` with the `fixed` points at rest and the `moved` points transformed.
 
+  Errors and cost are those of the first overload.
+
+  \param points see the first overload
   \param fixed range of positions in `points`, or of its elements; may be empty
   \param moved range of positions in `points`, or of its elements
   \param transformation a `Similarity` (see `rotation()`, `translation()`, `scaling()`), or another

@@ -51,6 +51,7 @@ using Mode_coordinates = shape_space::Mode_coordinates;
       \nptype `Mode_inner_product`
       \npdefault `branches`
   \npend
+  \throws pcs::Invalid_input for a space that was not built
   \par Complexity
   \f$O(n^4 b + n^2 e)\f$ for `n` trees, `b` branches and `e` edges, mostly for leave-one-out errors;
   memory \f$O(n e)\f$ per thread.
@@ -73,8 +74,11 @@ Modes_of_variation find_modes(const Orl_shape_space<Kernel, ConcurrencyTag>& spa
 
   For any scores, edge lengths of the trunk, and radii of edges of positive length, remain at least
   a hundredth of their values in the mean.
+
   \param space, modes a space and the result of `find_modes()` for it
-  \param scores at most one per mode, finite; missing scores are 0
+  \param scores at most one per mode, finite; missing scores are 0 [-]
+  \throws pcs::Invalid_input for modes of another space, too many scores, or a score that is not
+          finite
 */
 template <class Kernel, class ConcurrencyTag>
 Orl_tree tree_of_modes(const Orl_shape_space<Kernel, ConcurrencyTag>& space,
@@ -142,6 +146,10 @@ Orl_tree reconstruct_tree(const Orl_shape_space<Kernel, ConcurrencyTag>& space,
   It is the root mean square of two terms: the root mean square score of the tree, and its distance
   from the space of the modes in units of the median leave-one-out distance. It is about 1 for a
   tree of the same kind.
+
+  \param space, modes a space and the result of `find_modes()` for it
+  \param t a tree of the space
+  \throws pcs::Invalid_input for modes or a tree of another space
 */
 template <class Kernel, class ConcurrencyTag>
 double outlier_score(const Orl_shape_space<Kernel, ConcurrencyTag>& space,

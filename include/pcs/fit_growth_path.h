@@ -42,7 +42,10 @@ using Growth_spline = shape_space::Growth_spline;
       \nptype `bool`
       \npdefault `false`: they decrease only between trees where the given values decrease
   \npend
-  \throws pcs::Invalid_input for a wrong handle, or times that do not increase
+  \throws pcs::Invalid_input for a wrong handle, fewer than two trees, another number of times, or
+          times that do not increase
+  \par Complexity
+  \f$O(n e + n^2 b)\f$ for `n` trees of `e` edges and `b` branches.
 */
 template <class Kernel,
           class ConcurrencyTag,

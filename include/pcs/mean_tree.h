@@ -69,8 +69,9 @@ Orl_tree mean_tree(const Orl_shape_space<Kernel, ConcurrencyTag>& space,
   The mean of two trees lies on their geodesic. If all weights are `>= 0`, the mean lies between the
   inputs. Negative weights extrapolate; in this case, lengths are bounded from below by 0, and
   radii by a hundredth of the least positive radius among the inputs.
+
   \param space a space that was built
-  \param weights one per tree; they are divided by their sum, which must be positive
+  \param weights one per tree [-]; they are divided by their sum, which must be positive
   \throws pcs::Invalid_input for wrong weights, or a space that was not built
 */
 template <class Kernel, class ConcurrencyTag>

@@ -20,7 +20,11 @@ namespace IO {
   \brief reads a file of `write_correspondences()`.
 
   `Orl_shape_space::build_from()` checks whether the correspondences match the trees.
-  \throws pcs::IO_error naming the line and the expected content
+
+  \param path name of the file
+  \throws pcs::IO_error with the line and the expected content
+  \par Complexity
+  Linear in the size of the file.
 */
 inline Orl_correspondences read_correspondences(const std::string& path)
 {

@@ -190,7 +190,11 @@ private:
   \brief reads a file of `write_shape_space()`.
 
   `Orl_shape_space::restore()` checks whether the numbers are consistent.
-  \throws pcs::IO_error naming the line and the expected content
+
+  \param path name of the file
+  \throws pcs::IO_error with the line and the expected content
+  \par Complexity
+  Linear in the size of the file.
 */
 inline Orl_space_data read_shape_space(const std::string& path)
 {

@@ -24,11 +24,12 @@ namespace IO {
   \ingroup PkgPcsIORef
   \brief writes a table with all its properties.
 
-  The conditions are those of `Point_writer`. If writing fails, no incomplete file is left. The
-  table may be written to the file from which it was read. In LAS files, points from a LAS file keep
-  their scale and offset. If their coordinates cannot be represented with this offset, it is
-  replaced. For other points, the scale is the smallest power of ten for which the longest side of
-  the bounding box has at most 5e8 steps.
+  The conditions are those of `Point_writer`. The file is written completely or not at all, so the
+  table may be written to the file from which it was read.
+
+  In LAS files, points from a LAS file keep their scale and offset. If their coordinates cannot be
+  represented with this offset, it is replaced. For other points, the scale is the smallest power of
+  ten for which the longest side of the bounding box has at most 5e8 steps.
 
   \param path name of the file; its extension determines the format unless `options.format` is set
   \param table the points
@@ -36,6 +37,8 @@ namespace IO {
          the order of the table.
   \throws pcs::IO_error when the file cannot be written, or the format cannot hold the data
   \throws pcs::Invalid_input when a coordinate is not finite or a property has the wrong size
+  \par Complexity
+  Linear in the number of points and properties.
 */
 inline void write_points(const std::string& path,
                          const Point_table& table,
@@ -57,7 +60,12 @@ inline void write_points(const std::string& path,
   \ingroup PkgPcsIORef
   \brief writes the positions of a range of points.
 
+  Errors and cost are those of the first overload.
+
   \tparam PointRange a range of `Point_3` of a CGAL kernel
+  \param path name of the file
+  \param points the points, in the order of the file [L]
+  \param options options for writing
 */
 template <class PointRange>
 void write_points(const std::string& path,

@@ -79,10 +79,12 @@ double diameter_at(const Branch_measurer<Kernel>& tree,
   \brief writes one cylinder per edge inside a branch, with the cylinder columns of TreeQSM.
 
   Columns: `sx, sy, sz` (start), `ax, ay, az` (axis), `length, radius, parent, branch, order,
-  radius_error, is_measured`. The axis is a unit vector; `parent` is a row number from 1, or 0 if
-  there is none; `branch` counts from 1. Edges of length zero have no cylinder. The file is complete
-  or absent.
+  radius_error, is_measured`. Positions, lengths and radii are in the unit of the tree [L]. The axis
+  is a unit vector. `parent` is a row number from 1, or 0 if there is none. `branch` counts from 1.
+  Edges of length zero have no cylinder. The file is written completely or not at all.
 
+  \param path name of the file
+  \param tree a tree with branches
   \throws pcs::IO_error when the file cannot be written
   \throws pcs::Invalid_input when the graph is not a tree below its root, or a number is not finite
 */
@@ -279,8 +281,14 @@ void write_tree_table(const std::string& path,
   \brief writes the nodes of a tree skeleton as vertices with `radius`, `branch` and `order`, and
       its edges as edges of a PLY file.
 
+  The file is written completely or not at all.
+
+  \param path name of the file
+  \param tree a tree with branches, positions and radii in its unit [L]
   \throws pcs::IO_error when the file cannot be written
   \throws pcs::Invalid_input when the graph is not a tree below its root, or a number is not finite
+  \par Complexity
+  Linear in the number of nodes.
 */
 template <class Kernel>
 void write_ply_edges(const std::string& path, const Tree_skeleton<Kernel>& tree)

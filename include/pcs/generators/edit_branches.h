@@ -73,7 +73,8 @@ void move_to(const Eigen::Vector3d& p, Tree_node<Kernel>& node)
   \ingroup PkgPcsGeneratorsRef
   \brief returns the tree without one of its branches and the descendants of this branch.
 
-  The other nodes and branches keep their order; branches keep their `id`.
+  The other nodes and branches keep their order. Branches keep their `id`. O(n + b d) for n nodes
+  and b branches of order d or less.
 
   \param branch_id `Tree_branch::id` of the branch
   \throws pcs::Invalid_input when there is no such branch, or it is the trunk
@@ -115,6 +116,8 @@ Tree_skeleton<Kernel> prune_branch(const Tree_skeleton<Kernel>& tree, std::size_
 /*!
   \ingroup PkgPcsGeneratorsRef
   \brief rotates a branch and its descendants about the base of the branch.
+
+  O(n + b d) for n nodes and b branches of order d or less.
 
   \param tree nodes and branches keep their numbers
   \param branch_id `Tree_branch::id` of the branch
@@ -159,7 +162,8 @@ void turn_branch(Tree_skeleton<Kernel>& tree,
   \ingroup PkgPcsGeneratorsRef
   \brief changes the length of a branch; its descendants are translated without deformation.
 
-  The axis of the branch is scaled about its base. Radii are unchanged.
+  The axis of the branch is scaled about its base. Radii are unchanged. Linear in the number of
+  nodes.
 
   \param tree nodes and branches keep their numbers
   \param branch_id `Tree_branch::id` of the branch
