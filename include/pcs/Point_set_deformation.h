@@ -188,9 +188,9 @@ public:
            vertex descriptors with `operator<`; in any order, not necessarily connected
     \param softness 0: its points reach their targets exactly. Otherwise springs pull them to their
            targets, with the stiffness of the edges of a point divided by this value. [-]
-    \throws Invalid_input if `indices` is empty, or if an index is out of range, belongs to another
-            handle, or lies outside the region of interest, or an element is not one of the range;
-            nothing is changed then
+    \throws Invalid_input if `indices` is empty, an element is not one of the range, or an index is
+            out of range, belongs to another handle, or lies outside the region of interest. Nothing
+            is changed then.
   */
   template <class IndexRange>
   Handle add_handle(const IndexRange& indices, double softness = 0)

@@ -153,13 +153,13 @@ void write_cylinders(const std::string& path, const Tree_skeleton<Kernel>& tree)
   Columns, for a tree in metres: `order, parent, volume` [litres], `area` [m^2], `length` [m],
   `angle` [degrees], `height` [m], `azimuth` [degrees], `zenith` [degrees], `diameter` [m]. Row
   number `b` from 1 is the branch `b` in the table of `write_cylinders()`; `parent` is a row number,
-  or 0 for the trunk. `height` is that of the base above the root, `angle` that between the first
-  piece of a branch and the piece of its parent at the base, `azimuth` that of the first piece from
-  the x axis (the y axis if up is along x), counter-clockwise, and `diameter` that of the first
-  piece. `area` is that of the cylinders. `volume` is that of the frusta between the nodes, as in
-  `Skeleton_report::total`; it is slightly larger than that of the cylinders. In another
-  unit than the metre, `volume` is 1000 times the volume, and other values are in that unit. The
-  file is written completely or not at all.
+  or 0 for the trunk. `height` is that of the base above the root. `angle` is the angle between the
+  first piece of the branch and the piece of its parent at the base. `azimuth` is the angle of the
+  first piece from the x axis, counter-clockwise (from the y axis if up is along x). `diameter` is
+  that of the first piece. `area` is that of the cylinders. `volume` is that of the frusta between
+  the nodes, as in `Skeleton_report::total`; it is slightly larger than that of the cylinders. In
+  another unit than the metre, `volume` is 1000 times the volume, and other values are in that unit.
+  The file is written completely or not at all.
 
   \param path name of the file
   \param tree a tree with branches

@@ -274,9 +274,9 @@ inline void warn_of_stems(const Skeleton_report& r, std::vector<std::string>& se
 }
 
 /*!
-  Returns the factor from the standard deviation among subsets with a fraction f of the points to
-  the standard error of the whole scan: sqrt(f / (1 - f)), as of the delete-d jackknife
-  [Shao, Wu 1989], but at least 1, since decisions by chance do not improve with more points.
+  Returns the ratio of the standard error of the whole scan to the standard deviation among subsets
+  with a fraction f of the points. It is sqrt(f / (1 - f)), as for the delete-d jackknife [Shao, Wu
+  1989], but at least 1, since decisions by chance do not improve with more points.
 */
 inline double jackknife_factor(double fraction)
 {

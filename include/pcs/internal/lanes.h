@@ -302,9 +302,9 @@ inline constexpr double reciprocal_root_series[] = {1, 0.5, 0.375, 0.3125};
 /*!
   Computes `1 / sqrt(x)` to one or two units in the last place (ulp), from a guess based on the bits
   of `x`. Divisions and roots would dominate the time of a kernel. `x` must be positive.
-  With `d = 1 - x y^2`, the series `1 / sqrt(x) = y (1 + d / 2 + 3 d^2 / 8 + 5 d^3 / 16 + ...)` is
-  truncated after `d^3`, then in a second step after `d^2`: the error decreases from 3.5 % to 7e-6
-  and to 1e-15, with a shorter chain of operations than four steps of Newton's method.
+  With `d = 1 - x y^2`, `1 / sqrt(x) = y (1 + d / 2 + 3 d^2 / 8 + 5 d^3 / 16 + ...)`. The first step
+  truncates this series after `d^3`, the second after `d^2`. The error decreases from 3.5 % to 7e-6
+  and to 1e-15. The chain of operations is shorter than that of four steps of Newton's method.
 */
 template <class Arithmetic>
 PCS_ALWAYS_INLINE void reciprocal_root(const typename Arithmetic::Doubles& x,

@@ -134,10 +134,10 @@ inline double damp_long_edges(const std::vector<Vec3>& points,
   Links samples whose regions touch. Parts that are near in space but not along the graph stay
   unlinked.
 
-  The weight is that of a Voronoi cell Laplacian, length of the common border over distance of the
-  samples, scaled to mean 1; the border is as long as the sum of the edges that cross it, each
-  counted for at most the spacing there. `weight_unit` receives the weight of an edge whose border
-  is as long as itself.
+  The weight is that of a Voronoi cell Laplacian: the length of the common border divided by the
+  distance of the samples, scaled to mean 1. The length of the border is the sum of the lengths of
+  the edges that cross it, each limited to the local spacing. `weight_unit` receives the weight of
+  an edge whose border is as long as itself.
 */
 inline Weighted_graph sample_graph(const std::vector<Vec3>& points,
                                    const neighborhood::Proximity_graph& graph,

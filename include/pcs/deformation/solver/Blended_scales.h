@@ -26,8 +26,9 @@ namespace deformation {
 /*!
   The logarithm of the scale is harmonic between handles. Edges perpendicular to its gradient are
   multiplied by the scale. Edges along the gradient grow by a fraction of it, as far as the
-  positions of the handles permit: a rod with one end scaled at a fixed position must become thicker
-  but not longer, otherwise it would buckle. The fraction is the same for all bodies.
+  positions of the handles permit. For example, a rod with one end scaled at a fixed position
+  becomes thicker but not longer. Otherwise it would buckle. The fraction is the same for all
+  bodies.
 */
 template <class ConcurrencyTag>
 class Blended_scales

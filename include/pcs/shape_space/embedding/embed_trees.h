@@ -172,9 +172,10 @@ inline std::array<Orl_coordinates, 2> embed_trees(const Orl_layout& layout,
   return {std::move(one.x), std::move(two.x)};
 }
 
-/// Returns weights in units of length: the mean length of an edge for its rotation, the mean length
-/// of the edges of the parent for an attachment, and 1 for all others; or 1 for all if
-/// `is_published` [Aiteanu 2022]. `trees`: a range of `Orl_coordinates`.
+/// Returns weights by which all coordinates become lengths. The weight of a rotation is the mean
+/// length of its edge, that of an attachment the mean length of the edges of the parent [L]. All
+/// other weights are 1. If `is_published`, all weights are 1 [Aiteanu 2022]. `trees`: a range of
+/// `Orl_coordinates`.
 template <class Trees>
 Orl_weights make_weights(const Orl_layout& layout, const Trees& trees, bool is_published)
 {

@@ -40,10 +40,10 @@ namespace shape_space {
           + sum_{(i, j) in A} (C_ij + P_ij) + unmatched sum_{i not in A} w_i,
       P_ij = position (l_i + l_j) / 2 d / (1 + d / half_cost_distance),   d = |s_i - s_j|,
 
-  with `L = sqrt(L1 L2)`, the agreement `M` of curve 1 with curve 2, rotated by `R`, under the
-  correspondence `g` (`Elastic_matcher`), the angle `alpha` between `R` and the rotation `R_p` of
-  the parents, and the one-to-one assignment `A` of the children of both. Children have the longest
-  path `l`, the total length `w`, and attachments `s` in [0, 1] along curve 1.
+  with `L = sqrt(L1 L2)`. `M` is the agreement of curve 1 with curve 2, rotated by `R`, under the
+  correspondence `g` (`Elastic_matcher`). `alpha` is the angle between `R` and the rotation `R_p` of
+  the parents. `A` is the one-to-one assignment of the children of both. A child has the longest
+  path `l`, the total length `w`, and the attachment `s` in [0, 1] along curve 1.
 
   `Branch_matching` minimises `C` over paths and assignments; `g` maximises `M` for `R_p`, and `R`
   maximises `tr(R^T B)` (Wahba's problem) for

@@ -107,9 +107,9 @@ inline void limit_angles(const Orl_layout& layout,
   }
 }
 
-/// Brings height, crown width and total length into the range of others as far as possible:
-/// stretches the trunk to the height, the branches on it to the width of the crown, and all others
-/// to the total length.
+/// Brings height, crown width and total length into the range of other trees as far as possible.
+/// Scales the trunk until the height is in range, then the branches on it for the crown width, and
+/// all other branches for the total length.
 inline void limit_lengths(const Orl_layout& layout,
                           Orl_orientation kind,
                           const Vec3& up,

@@ -29,9 +29,11 @@ namespace skeleton {
   A section of length `h` [L] is expected to have `2 pi r h D` points. `Axis_fit` minimises the
   residuals of the gathered points, with the priors of `expect_sections()`, until no node changes by
   `settled s`. Radii are then reduced to `max(r / 2, sqrt(r^2 - noise_share s^2))`. The axis is
-  accepted if it explains the fraction `explained` of its own points, and if one of its nodes is at
-  least `(1 + protrusion_radius) R + protrusion u` from the nearest other axis, of radius `R` [L],
-  or has no point of another axis within `protrusion u`.
+  accepted if it explains the fraction `explained` of its own points, and if it has a node
+
+  - at a distance of at least `(1 + protrusion_radius) R + protrusion u` from the nearest other
+    axis, which has the radius `R` [L], or
+  - without points of other axes within `protrusion u`.
 */
 struct Chain_options
 {

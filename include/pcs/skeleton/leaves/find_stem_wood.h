@@ -23,10 +23,11 @@ struct Stem_wood_options
 };
 
 /*!
-  Marks the wood of the stem: `n_v >= fraction n` and `wood_score >= likelihood`, where `n_v` is the
-  number of points of the level-set component `v` of a point and of all its descendants, and `n` the
-  number of all points in the tree of components. Only the stem supports this fraction, even if its
-  axis is fitted badly. Sums over the whole scan depend little on single points. O(points).
+  Marks the wood of the stem. A point of the level-set component `v` is marked if
+  `n_v >= fraction n` and `wood_score >= likelihood`. `n_v` is the number of points of `v` and of
+  its descendants, `n` that of all points in the tree of components [count]. Only the stem supports
+  this fraction, even if its axis is fitted badly. Sums over the whole scan depend little on single
+  points. O(points).
 */
 inline std::vector<std::uint8_t> points_of_stem(const Layer_tree& layers,
                                                 const std::vector<float>& wood_score,

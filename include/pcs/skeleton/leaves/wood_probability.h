@@ -100,11 +100,11 @@ constexpr Multilayer_perceptron<Surroundings::number_of_features, 12> likeness_o
 
       y = b + sum_{u=1..12} v_u max(0, b_u + sum_{f=1..16} w_uf x_f),   P(wood) = 1 / (1 + exp(-y))
 
-  with the weights of `likeness_of_surroundings`. The features `x` are, for each of three balls
-  about the point, `ln(1 + n)` of the number `n` of its points [-], their standard deviations along
-  the principal axes in descending order, and the distance of their mean from the point; the last
-  one is the score of the best line [-]. Lengths are in radii of the tube of
-  `Linear_point_options` [-]; the balls have 0.29, 0.58 and 1 times its reach. O(1).
+  with the weights of `likeness_of_surroundings`. The features `x` are five values for each of three
+  balls about the point, and finally the score of the best line [-]. For `n` points in a ball, they
+  are `ln(1 + n)` [-], the standard deviations of these points along the principal axes in
+  descending order, and the distance of their mean from the point. Lengths are in radii of the tube
+  of `Linear_point_options` [-]. The radii of the balls are 0.29, 0.58 and 1 times its reach. O(1).
 */
 inline double wood_probability(const Surroundings& surroundings)
 {

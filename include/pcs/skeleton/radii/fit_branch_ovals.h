@@ -58,10 +58,10 @@ inline Axis_oval oval_of_branch(const Scan& scan,
 } // namespace internal
 
 /*!
-  Fits one oval `r (1 + c cos 2a + s sin 2a)` to all sections of a thick branch whose nodes have no
-  ellipse of their own, since an arc of a single section does not determine an ellipse. Sections of
-  a branch that does not significantly differ from a circle remain circles. The ellipses have the
-  areas of the circles with the radii of the nodes. O(points).
+  Fits one oval `r (1 + c cos 2a + s sin 2a)` to all sections of a branch if at least half of its
+  nodes are measured and have no ellipse, since the points of a single section are an arc. These
+  nodes get an ellipse of the shape of the oval, with the area of their circle. If the oval does not
+  significantly differ from a circle, they remain circles. O(points).
 */
 template <class ConcurrencyTag>
 void fit_branch_ovals(const Scan& scan,

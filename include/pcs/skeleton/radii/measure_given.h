@@ -318,10 +318,11 @@ private:
   }
 
   /*!
-  Computes the radii of the nodes from the radii of the edges. If there is neither a detected branch
-  nor a circle, the last measured radius towards the root is reduced in proportion to the remaining
-  length to the tip, but not below the next measured radius towards the tip. The few points at such
-  an edge may belong to other branches; they change the radius by at most a factor of `slack`.
+  Computes the radii of the nodes from the radii of the edges. Nodes with neither a detected branch
+  nor a circle get the last measured radius towards the root, reduced in proportion to the remaining
+  length to the tip. The result is not less than the next measured radius towards the tip. The few
+  points at such an edge may belong to other branches; they change the radius by at most a factor of
+  `slack`.
   */
   void fill_gaps(std::vector<Branch_node>& nodes) const
   {

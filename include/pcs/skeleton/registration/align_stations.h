@@ -37,10 +37,10 @@ namespace internal {
 
 /*!
   Estimates the motions of the stations by the Gauss-Newton method. The distance of a point from a
-  straight piece of a branch depends on the motion of its station and on the shape of the piece: a
-  bent axis, a radius that changes along it, an oval section. The ten shape parameters of every
-  piece are eliminated. The remaining residuals determine the motions, since each station sees a
-  different side. Only the positions of the pieces are taken from the fitted axes. The bends of
+  straight piece of a branch depends on the motion of its station and on the shape of the piece. The
+  axis may be bent, the radius may change, and the section may be oval. The ten shape parameters of
+  every piece are eliminated. The remaining residuals determine the motions, since each station sees
+  a different side. Only the positions of the pieces are taken from the fitted axes. The bends of
   these axes are not used, because they depend on the unknown motions of the points.
 */
 template <class ConcurrencyTag>
