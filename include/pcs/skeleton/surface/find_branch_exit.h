@@ -19,14 +19,14 @@ namespace skeleton {
 /// The position where the axis of a branch passes through the surface of its parent.
 struct Branch_exit
 {
-  bool is_there = false;     ///< otherwise only `start` is valid
-  double at = 0;             ///< arc length on the axis of the parent [L]
-  double half = 0;           ///< half the length of the footprint along that axis [L]
-  double start = 0;          ///< arc length of the first ring of the branch; < 0: no surface [L]
-  double radius = 0;         ///< of the branch [L]
-  Vec3 point = Vec3::Zero(); ///< on the axis of the branch [L]
-  Vec3 direction = Vec3::Zero(); ///< unit vector along the branch, limited by `steepest`
-  Vec3 normal = Vec3::Zero();    ///< outward unit normal of the parent
+  bool is_there = false; ///< otherwise only `start` is valid
+  //! arc length on the axis of the parent, and half the length of the footprint along it [L]
+  double at = 0, half = 0;
+  double start = 0;  ///< arc length of the first ring of the branch; < 0: no surface [L]
+  double radius = 0; ///< of the branch [L]
+  //! on the axis of the branch [L]; unit vector along the branch, with its angle to the parent
+  //! limited by `steepest`; outward unit normal of the parent
+  Vec3 point = Vec3::Zero(), direction = Vec3::Zero(), normal = Vec3::Zero();
 };
 
 /// Finds the exit of a branch by bisection along its axis. `below` is the axis of the parent, or
