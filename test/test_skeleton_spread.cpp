@@ -8,11 +8,14 @@
 
 #include <CGAL/tags.h>
 
+#include <boost/range/iterator_range.hpp>
 #include <boost/test/unit_test.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <random>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -54,6 +57,7 @@ BOOST_AUTO_TEST_CASE(copies_do_not_change_the_tree)
   BOOST_TEST(b.spread.number_of_copies == 2u);
   BOOST_TEST(a.total.volume == b.total.volume);
   BOOST_TEST(num_vertices(plain) == num_vertices(tree));
+  BOOST_TEST(!b.spread.is_displaced);
 }
 
 BOOST_AUTO_TEST_CASE(a_clear_tree_has_a_small_spread_and_no_warning)
@@ -233,6 +237,87 @@ BOOST_AUTO_TEST_CASE(a_negative_number_of_copies_is_refused)
   BOOST_CHECK_EXCEPTION(pcs::extract_tree_skeleton(clear_tree(), tree, np::number_of_resamples(-1)),
                         pcs::Invalid_input,
                         pcs_test::message_has("number_of_resamples is -1"));
+}
+
+BOOST_AUTO_TEST_CASE(the_distance_from_the_copies_is_in_tolerances)
+{
+  pcs::Skeleton_report report;
+  report.height = 10;
+  report.diameter_at_breast_height = 0.2;
+  report.by_order = {{1, 9, 0.3}};
+  report.total = {10, 50, 0.5};
+  report.breast_height = 1.3;
+  const pcs::skeleton::Vec3 root(0, 0, 0);
+  pcs::skeleton::internal::Copied_figures figures;
+  BOOST_TEST(figures.distance_from_medians(report, root) == 0);
+  for (int k = 0; k < 4; ++k)
+    figures.add(report, root);
+  BOOST_TEST(figures.distance_from_medians(report, root) == 0);
+  pcs::Skeleton_report other = report;
+  other.by_order.front().length = 6; // 3 m of 6 m are 50 %, the tolerance is 5 %
+  BOOST_CHECK_CLOSE(figures.distance_from_medians(other, root), 10, 1e-6);
+  other = report;
+  other.height = 10.2;
+  BOOST_CHECK_CLOSE(figures.distance_from_medians(other, root), 0.2 / 0.102, 1e-6);
+  BOOST_CHECK_CLOSE(figures.distance_from_medians(report, pcs::skeleton::Vec3(0, 0.13, 0)),
+                    0.13 / 0.052,
+                    1e-6);
+  other = report; // one copy that differs has no influence
+  other.total.volume = 5;
+  pcs::skeleton::internal::Copied_figures mixed = figures;
+  mixed.add(other, root);
+  BOOST_TEST(mixed.distance_from_medians(report, root) == 0);
+}
+
+BOOST_AUTO_TEST_CASE(displacements_are_bounded_and_depend_on_the_seed)
+{
+  const std::vector<pcs::skeleton::Vec3> points(50, pcs::skeleton::Vec3(1, 2, 3));
+  auto a = points, b = points, c = points;
+  pcs::skeleton::displace_points(a, 0.01, 1);
+  pcs::skeleton::displace_points(b, 0.01, 1);
+  pcs::skeleton::displace_points(c, 0.01, 2);
+  BOOST_TEST((a == b));
+  BOOST_TEST((a != c));
+  double largest = 0;
+  for (const auto& p : a)
+    largest = std::max(largest, (p - points.front()).cwiseAbs().maxCoeff());
+  BOOST_TEST(largest <= 0.01);
+  BOOST_TEST(largest > 0.005);
+}
+
+BOOST_AUTO_TEST_CASE(an_untypical_skeleton_is_replaced)
+{
+  std::mt19937 random(3); // random points have random skeletons
+  std::uniform_real_distribution<double> uniform(0, 1);
+  Cloud points;
+  for (int i = 0; i < 1500; ++i)
+    points.emplace_back(uniform(random), uniform(random), 4 * uniform(random));
+  Tree plain, tree;
+  pcs::extract_tree_skeleton(points, plain);
+  std::size_t calls = 0;
+  const auto np = np::number_of_resamples(4).callback([&](double) {
+    ++calls;
+    return true;
+  });
+  const auto report = pcs::extract_tree_skeleton(points, tree, np);
+  BOOST_TEST_REQUIRE(report.spread.is_displaced);
+  BOOST_TEST(num_vertices(tree) != num_vertices(plain));
+
+  // stopped in each part of the work, the calls together give the same tree
+  std::size_t allowed = 0;
+  pcs::Tree_skeletonization stages(points, np::number_of_resamples(4).callback([&](double) {
+    return allowed-- > 0;
+  }));
+  Tree stopped;
+  std::size_t stops = 0;
+  do {
+    allowed = calls / 7;
+    ++stops;
+  } while (stages.extract(stopped).status == pcs::Status::cancelled && stops < 100);
+  BOOST_TEST(stops > 2u);
+  BOOST_TEST_REQUIRE(num_vertices(stopped) == num_vertices(tree));
+  for (const auto v : boost::make_iterator_range(vertices(tree)))
+    BOOST_TEST((stopped[v].point == tree[v].point));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -173,8 +173,9 @@ pcs::Skeleton_report extract(const std::string& input,
   slices.do_mark_support = !options.do_fit_all;
   if (options.do_use_all)
     slices.highest_count = 0;
-  const auto method =
-      options.method == "chains" ? pcs::Skeleton_method::chains : pcs::Skeleton_method::sections;
+  const auto method = options.method == "chains"     ? pcs::Skeleton_method::chains
+                      : options.method == "sections" ? pcs::Skeleton_method::sections
+                                                     : pcs::Skeleton_method::level_sets;
   const auto np = pcs::parameters::point_map(points)
                       .skeleton_method(method)
                       .slice_options(slices)

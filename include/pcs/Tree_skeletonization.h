@@ -135,7 +135,8 @@ public:
         \nptype model of `ReadablePropertyMap`, key: vertex descriptor, value: a point type
         \npdefault the bundled property of `Tree_skeleton`; needed for other graphs
       \np{skeleton_method} how branches are found
-        \nptype `Skeleton_method`: `chains`, or `sections`, the published method \cite aiteanu2022
+        \nptype `Skeleton_method`: `chains`; `sections`, the published method \cite aiteanu2022; or
+            `level_sets`, for plants with leaf blades
         \npdefault `chains`
       \np{slice_options} options of the method `sections`: how slices are cut, fitted and tilted,
           how sections are connected, and the radii of sparse branches

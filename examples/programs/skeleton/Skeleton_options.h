@@ -216,8 +216,9 @@ inline void declare(CLI::App& app, Skeleton_options& options)
       ->check(CLI::NonNegativeNumber);
   app.add_option("--method",
                  options.method,
-                 "how branches are found; `sections` is the published method [Aiteanu 2022]")
-      ->check(CLI::IsMember({"chains", "sections"}))
+                 "how branches are found; `sections` is the published method [Aiteanu 2022], "
+                 "`level_sets` is for plants with leaf blades such as maize")
+      ->check(CLI::IsMember({"chains", "sections", "level_sets"}))
       ->capture_default_str();
   app.add_option("--fit",
                  options.fit,
@@ -387,6 +388,8 @@ inline void check(const Skeleton_options& options)
   refuse(options.do_use_all && !has_sections, "--all-points", "--method sections");
   refuse(options.do_fit_all && !has_sections, "--no-support", "--method sections");
   refuse(options.do_estimate_normals && !has_sections, "--estimate-normals", "--method sections");
+  const bool has_chains = options.method == "chains";
+  refuse(options.do_remove_leaves && !has_chains, "--remove-leaves", "--method chains");
   for (const std::string& option : options.given_numbers)
     refuse(!has_sections, option.c_str(), "--method sections");
   refuse(options.tolerance >= 0 && !options.has_mesh(), "--tolerance", "a mesh");

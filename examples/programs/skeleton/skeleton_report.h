@@ -22,6 +22,7 @@ inline std::string in_options(std::string sentence)
        {std::make_pair("do_remove_leaves(true)", "--remove-leaves"),
         std::make_pair("do_remove_leaves(false)", "--keep-leaves"),
         std::make_pair("root_position", "--root"),
+        std::make_pair("skeleton_method(level_sets)", "--method level_sets"),
         std::make_pair("breast height, which", "--breast-height, which")}) {
     const std::size_t at = sentence.find(parameter);
     if (at != std::string::npos)

@@ -5,6 +5,7 @@
 #ifndef PCS_CORE_SKELETON_REPORT_H
 #define PCS_CORE_SKELETON_REPORT_H
 
+#include <pcs/core/Skeleton_options.h>
 #include <pcs/core/Status.h>
 #include <pcs/internal/constants.h>
 #include <pcs/internal/unit_of_height.h>
@@ -80,6 +81,7 @@ struct Skeleton_report
 {
   //! `converged`; `nothing_to_do` if no branch was found; `cancelled`
   Status status = Status::nothing_to_do;
+  Skeleton_method method = Skeleton_method::chains; ///< as given by the caller
 
   std::size_t number_of_points = 0; ///< of the input [count]
   //! points that coincide with another point within the noise; in dense scans, these are all points
@@ -240,9 +242,10 @@ inline void warn_of_shape(const Skeleton_report& r, std::vector<std::string>& se
   constexpr double max_spacing = 1.0 / 3;
   const auto& trunk = r.by_order.front();
   const double diameter = 2 * std::sqrt(trunk.volume / (pcs::internal::pi * trunk.length));
-  if (r.status == Status::converged &&
+  if (r.status == Status::converged && r.method != Skeleton_method::level_sets && // no surfaces
       r.residual > std::max({max_residual * r.noise, exact * r.spacing, oval * diameter}))
-    sentences.push_back("half of the points lie far from the surfaces found; this may be no tree");
+    sentences.push_back("half of the points lie far from the surfaces found; this may be no tree "
+                        "(skeleton_method(level_sets) is for plants with leaf blades)");
   if (diameter < min_trunk_ratio * r.height)
     sentences.push_back("the trunk is too thin for the height; the scan may show too little of it, "
                         "or wood was classified as leaves (do_remove_leaves(false) keeps it)");

@@ -11,6 +11,7 @@
 #include <pcs/skeleton/Session.h>
 #include <pcs/skeleton/Session_options.h>
 #include <pcs/skeleton/axes/reassign_points.h>
+#include <pcs/skeleton/branching/level_set_skeleton.h>
 #include <pcs/skeleton/scan/Point_labels.h>
 #include <pcs/skeleton/scan/measure_coordinate_step.h>
 #include <pcs/skeleton/scan/prepare_scan.h>
@@ -59,7 +60,7 @@ struct Session_state
   std::vector<Index> successors;       ///< next node on the branch, by node of the tree
 
   const std::vector<std::uint8_t>& is_used() const { return labels.flags(); }
-  bool has_sections() const { return options.method == Skeleton_method::sections; }
+  bool has_axes() const { return options.method == Skeleton_method::chains; }
 };
 
 namespace internal {
@@ -169,6 +170,8 @@ void localize_hints(Session_state<Tag>& s)
     if (!o.root)
       o.root = o.given->points.front();
   }
+  if (o.method == Skeleton_method::level_sets)
+    o.layers.thickness = blade_layer_thickness;
   for (Vec3& scanner : o.scanners)
     scanner = frame.to_local(scanner);
 }
@@ -451,12 +454,15 @@ void measure_sections(Session_state<Tag>& s)
   describe_tree(s);
 }
 
-/// Builds the tree of the method `sections`.
+/// Builds the tree of the methods `sections` and `level_sets`.
 template <class Tag>
-bool join_sections(Session_state<Tag>& s, pcs::internal::Progress& progress)
+bool join_centers(Session_state<Tag>& s, pcs::internal::Progress& progress)
 {
   const pcs::internal::Stage_timer timer(s.report.seconds.joints);
-  s.joined.tree = section_skeleton<Tag>(s.scan, s.is_used(), s.sections, s.root, s.options.slices);
+  s.joined.tree =
+      s.options.method == Skeleton_method::sections
+          ? section_skeleton<Tag>(s.scan, s.is_used(), s.sections, s.root, s.options.slices)
+          : level_set_skeleton(s.scan, s.layers, s.root);
   correct_widening(s);
   describe_tree(s);
   return finish(s, Stage::joints, end_of_radii, progress);
@@ -493,6 +499,7 @@ Session<ConcurrencyTag>::Session(std::vector<Vec3> input,
   m_state->report.number_of_points = input.size();
   m_state->input = std::move(input);
   m_state->is_wood = std::move(is_wood);
+  m_state->report.method = options.method;
   m_state->options = std::move(options);
 }
 
@@ -542,10 +549,12 @@ bool Session<ConcurrencyTag>::fit_axes(pcs::internal::Progress& progress)
   if (!find_paths(progress) || s.stage >= Stage::axes)
     return s.stage >= Stage::axes;
   const pcs::internal::Stage_timer timer(s.report.seconds.axes);
-  if (!s.root.empty()) // without a root, no point belongs to a tree
-    if (!(s.has_sections() ? internal::find_sections(s, progress)
-                           : internal::fit_all_axes(s, progress)))
-      return false;
+  if (s.root.empty()) // without a root, no point belongs to a tree
+    return internal::finish(s, Stage::axes, internal::end_of_axes, progress);
+  if (s.has_axes() && !internal::fit_all_axes(s, progress))
+    return false;
+  if (s.options.method == Skeleton_method::sections && !internal::find_sections(s, progress))
+    return false;
   return internal::finish(s, Stage::axes, internal::end_of_axes, progress);
 }
 
@@ -555,8 +564,8 @@ bool Session<ConcurrencyTag>::join(pcs::internal::Progress& progress)
   Session_state<ConcurrencyTag>& s = *m_state;
   if (!fit_axes(progress) || s.stage >= Stage::joints)
     return s.stage >= Stage::joints;
-  if (s.has_sections() && !s.root.empty())
-    return internal::join_sections(s, progress);
+  if (!s.has_axes() && !s.root.empty())
+    return internal::join_centers(s, progress);
   if (!internal::join_branches(s, progress))
     return false;
   internal::measure_sections(s);

@@ -248,7 +248,7 @@ Input_options read_skeleton_options(const NamedParameters& np, const std::string
   internal::read_method(np, caller, hints);
   pcs::internal::check(!hints.given || hints.method == Skeleton_method::chains,
                        caller,
-                       "`given_skeleton` and `skeleton_method(sections)` exclude each other");
+                       "`given_skeleton` can only be used with `skeleton_method(chains)`");
   hints.do_register_stations = true;
   internal::read_parameter(np, internal::tags::do_register_stations, hints.do_register_stations);
   internal::read_leaf_removal(np, hints);

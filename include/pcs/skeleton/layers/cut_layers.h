@@ -127,13 +127,17 @@ void vote_for_parents(const std::vector<Index>& predecessor, Layer_tree& tree)
 
 /*!
   Cuts the points into level sets of the length of their shortest paths. Returns the tree of the
-  connected components of these level sets. `links` are the edges of the graph of `paths`.
+  connected components of these level sets. `links` are the edges of the graph of `paths`;
+  `spacings` is the thickness of a level set in spacings.
 */
 template <class ConcurrencyTag>
-Layer_tree layer_tree(const Scan& scan, const Links& links, const Shortest_paths& paths)
+Layer_tree layer_tree(const Scan& scan,
+                      const Links& links,
+                      const Shortest_paths& paths,
+                      double spacings = layer_thickness)
 {
   const std::size_t n = scan.size();
-  const double thickness = layer_thickness * scan.spacing;
+  const double thickness = spacings * scan.spacing;
   std::vector<Index> layer(n, none);
   pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t i) {
     if (std::isfinite(paths.distance[i]))

@@ -27,6 +27,7 @@ struct Layer_options
 {
   Root_options roots;
   Ring_arc_options rings;
+  double thickness = layer_thickness; ///< of a level set, in spacings [-]
 };
 
 /// Returns the points of the root: those of `find_root_near()` for a `hint` (in coordinates of the
@@ -81,7 +82,7 @@ Shortest_paths trace_layers(const Scan& scan,
   Shortest_paths paths = shortest_paths(scan, *linked.graph, root);
   linked.graph.reset();
   links.insert(links.end(), linked.gaps.begin(), linked.gaps.end());
-  layers = layer_tree<ConcurrencyTag>(scan, links, paths);
+  layers = layer_tree<ConcurrencyTag>(scan, links, paths, options.thickness);
   merge_ring_arcs<ConcurrencyTag>(scan, options.rings, layers);
   return paths;
 }
