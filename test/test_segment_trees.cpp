@@ -222,6 +222,27 @@ BOOST_AUTO_TEST_CASE(implausible_trees_are_named)
   BOOST_TEST(pcs::warnings(report)[1].find("number 0, 1") != std::string::npos);
 }
 
+BOOST_AUTO_TEST_CASE(trees_thicker_than_others_of_the_same_height_are_named)
+{
+  pcs::Segmentation_report report;
+  report.breast_height = 1.3;
+  report.trees.resize(5);
+  for (pcs::Segmented_tree& tree : report.trees) {
+    tree.radius = 0.2;
+    tree.height = 25;
+    tree.diameter_at_breast_height = 0.4;
+  }
+  BOOST_TEST(pcs::warnings(report).empty());
+  report.trees[3].diameter_at_breast_height = 1.3; // of 25 m: shrubs around the stem
+  const std::vector<std::string> sentences = pcs::warnings(report);
+  BOOST_TEST_REQUIRE(sentences.size() == 1u);
+  BOOST_TEST(sentences[0].find("1 tree(s) thicker at breast height") == 0u);
+  BOOST_TEST(sentences[0].find("number 3") != std::string::npos);
+  for (pcs::Segmented_tree& tree : report.trees)
+    tree.diameter_at_breast_height = 1.3; // a stand of stout trees
+  BOOST_TEST(pcs::warnings(report).empty());
+}
+
 BOOST_AUTO_TEST_CASE(trees_that_end_far_below_others_are_named)
 {
   pcs::Segmentation_report report;

@@ -94,6 +94,9 @@ inline std::vector<std::string> warnings(const Segmentation_report& r)
   // a tree without its top: height and radius, in medians of a stand of at least this many trees
   constexpr double cut_height = 0.6, full_radius = 0.8;
   constexpr std::size_t min_trees = 4;
+  // a stem hidden by shrubs: diameter at breast height / height, in medians of the stand, and at
+  // least, since old trees are stouter than young ones [-]
+  constexpr double stout = 2, min_stout = 0.04;
   double height = 0;
   for (const Segmented_tree& tree : r.trees)
     height = std::max(height, tree.height);
@@ -110,11 +113,23 @@ inline std::vector<std::string> warnings(const Segmentation_report& r)
       "with a stem too thick for the height, perhaps several stems or ground in one",
       sentences);
   if (r.trees.size() >= min_trees) {
-    std::vector<double> heights, radii;
+    std::vector<double> heights, radii, ratios;
     for (const Segmented_tree& tree : r.trees) {
       heights.push_back(tree.height);
       radii.push_back(tree.radius);
+      if (tree.diameter_at_breast_height > 0 && !is_low(tree))
+        ratios.push_back(tree.diameter_at_breast_height / tree.height);
     }
+    const double limit = std::max(min_stout, stout * internal::lower_median(ratios));
+    internal::warn_of_trees(
+        r,
+        [&](const Segmented_tree& t) {
+          return !is_low(t) && t.diameter_at_breast_height > limit * t.height &&
+                 t.diameter_at_breast_height <= max_diameter * t.height;
+        },
+        "thicker at breast height than others of the same height; shrubs or other stems may hide "
+        "the stem",
+        sentences);
     const double typical_height = internal::lower_median(heights),
                  typical_radius = internal::lower_median(radii);
     internal::warn_of_trees(
