@@ -20,6 +20,4 @@ pcs_add_script_test(format.clang_format check_format.cmake
 
 pcs_add_script_test(format.line_length check_line_length.cmake)
 
-if(EXISTS ${PROJECT_SOURCE_DIR}/examples/readme_example.cpp)
-  pcs_add_script_test(readme.example check_readme.cmake)
-endif()
+pcs_add_script_test(manual.code check_code_in_pages.cmake)
