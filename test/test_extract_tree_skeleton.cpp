@@ -486,7 +486,8 @@ BOOST_AUTO_TEST_CASE(any_mutable_graph_takes_the_result)
   {
     std::array<float, 3> unused{};
     Point position = Point(0, 0, 0);
-    float width = 0;
+    float width = 0, width_error = -1;
+    int branch = -1;
   };
   using Graph = boost::adjacency_list<boost::listS, boost::listS, boost::directedS, Vertex>;
   Graph graph;
@@ -495,8 +496,15 @@ BOOST_AUTO_TEST_CASE(any_mutable_graph_takes_the_result)
       pcs::extract_tree_skeleton(cylinder(4000, 0.1, 1),
                                  graph,
                                  pcs::parameters::node_point_map(get(&Vertex::position, graph))
-                                     .node_radius_map(get(&Vertex::width, graph)));
+                                     .node_radius_map(get(&Vertex::width, graph))
+                                     .node_radius_error_map(get(&Vertex::width_error, graph))
+                                     .node_branch_map(get(&Vertex::branch, graph)));
   BOOST_CHECK_EQUAL(num_vertices(graph), report.number_of_nodes);
+  for (const auto v : boost::make_iterator_range(vertices(graph))) {
+    BOOST_CHECK_EQUAL(graph[v].branch, 0);
+    BOOST_TEST(graph[v].width_error >= 0);
+    BOOST_TEST(graph[v].width_error < graph[v].width);
+  }
   BOOST_CHECK_EQUAL(num_edges(graph) + 1, report.number_of_nodes);
   BOOST_CHECK_CLOSE(double(graph[*std::next(vertices(graph).first, 5)].width), 0.1, 3.0);
 }

@@ -172,6 +172,27 @@ BOOST_AUTO_TEST_CASE(grown_trees_are_one_solid)
   }
 }
 
+BOOST_AUTO_TEST_CASE(a_surface_mesh_takes_the_surface)
+{
+  Tree tree;
+  pcs::grow_tree(tree, pcs::fruit_habit(), pcs::parameters::random_seed(3));
+  std::vector<Point> points;
+  std::vector<std::array<std::size_t, 3>> triangles;
+  pcs::make_branch_surface(tree, points, triangles, pcs::parameters::tolerance(0.01));
+  using Other_kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+  CGAL::Surface_mesh<Other_kernel::Point_3> mesh;
+  mesh.add_vertex(Other_kernel::Point_3(9, 9, 9)); // remains
+  const auto report = pcs::make_branch_surface(tree, mesh, pcs::parameters::tolerance(0.01));
+  BOOST_TEST(report.number_of_triangles == triangles.size());
+  BOOST_TEST(mesh.number_of_faces() == triangles.size());
+  BOOST_TEST(mesh.number_of_vertices() == points.size() + 1);
+  BOOST_TEST(mesh.is_valid());
+  BOOST_TEST(CGAL::is_closed(mesh));
+  BOOST_CHECK_CLOSE(CGAL::Polygon_mesh_processing::volume(mesh),
+                    volume_of(points, triangles),
+                    1e-6);
+}
+
 BOOST_AUTO_TEST_CASE(a_coarser_surface_has_fewer_triangles)
 {
   const Tree& tree = small_scan().truth;

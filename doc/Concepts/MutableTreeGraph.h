@@ -29,11 +29,14 @@
   p.x(); p.y(); p.z();                     // p.x() gives the type FT
   put(node_point_map, v, p);
   put(node_radius_map, v, Radius(0.5));    // the value type, a floating point type
+  put(node_radius_error_map, v, Error(0)); // optional; likewise
+  put(node_branch_map, v, Branch(0));      // optional; an integer type
   \endcode
 
   \par Required
   for a graph other than `pcs::Tree_skeleton`, the property maps `node_point_map` and
-  `node_radius_map`, which must accept new vertices as keys
+  `node_radius_map`, which must accept new vertices as keys; so must the optional maps
+  `node_radius_error_map` (floating point) and `node_branch_map` (integers)
 
   \par Checked by
   `static_assert`s of `pcs::extract_tree_skeleton()`: `add_vertex()` and `add_edge()` of the graph,

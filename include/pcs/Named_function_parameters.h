@@ -52,6 +52,8 @@
   /* Tree graphs: positions and radii of nodes */                                                  \
   PCS_OWN(node_point_map)                                                                          \
   PCS_OWN(node_radius_map)                                                                         \
+  PCS_OWN(node_radius_error_map)                                                                   \
+  PCS_OWN(node_branch_map)                                                                         \
   /* extract_tree_skeleton(): method, radii, and a skeleton of the caller */                       \
   PCS_OWN(skeleton_method)                                                                         \
   PCS_OWN(slice_options)                                                                           \

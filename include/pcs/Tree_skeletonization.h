@@ -194,6 +194,14 @@ public:
       \np{node_radius_map} where the radius of a vertex of the result is written [L]
         \nptype model of `WritablePropertyMap`, key: vertex descriptor, value: floating point
         \npdefault the bundled property of `Tree_skeleton`; needed for other graphs
+      \np{node_radius_error_map} where the standard error of this radius is written [L]; for graphs
+          other than `Tree_skeleton`
+        \nptype model of `WritablePropertyMap`, key: vertex descriptor, value: floating point
+        \npdefault none
+      \np{node_branch_map} where the index of the branch of a vertex is written; 0 is the trunk. For
+          graphs other than `Tree_skeleton`
+        \nptype model of `WritablePropertyMap`, key: vertex descriptor, value: an integer type
+        \npdefault none
       \np{callback} called on this thread with a value that grows from 0 to 1; `false` stops
         \nptype `std::function<bool(double)>`
         \npdefault none

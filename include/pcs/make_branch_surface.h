@@ -12,7 +12,12 @@
 #include <pcs/skeleton/input/caller_types.h>
 #include <pcs/skeleton/surface/Surface_builder.h>
 
+#include <CGAL/assertions.h>
+#include <CGAL/boost/graph/Euler_operations.h>
+#include <CGAL/boost/graph/properties.h>
 #include <CGAL/number_utils.h>
+
+#include <boost/graph/graph_traits.hpp>
 
 #include <algorithm>
 #include <array>
@@ -193,6 +198,47 @@ Branch_surface_report make_branch_surface(const Tree_skeleton<Kernel>& tree,
   points = std::move(result);
   triangles = std::move(surface.triangles);
   return {points.size(), triangles.size(), surface.number_of_joined, surface.number_of_separate};
+}
+
+/*!
+  \ingroup PkgPcsSkeletonRef
+  \brief makes the surface of a tree as a mesh of CGAL.
+
+  \param tree a tree; positions and radii are finite
+  \param mesh a model of `MutableFaceGraph` with an internal property map for `CGAL::vertex_point`,
+      such as `CGAL::Surface_mesh`. The surface is added to it; it is unchanged if the function
+      throws an `Invalid_input`
+  \param np the named parameters of the function for points and triangles
+  \throws Invalid_input if a position or radius is not finite, or `tolerance` is out of range
+  \par Complexity
+  O(nodes log nodes + triangles).
+*/
+template <class Kernel,
+          class FaceGraph,
+          class NamedParameters = parameters::Default_named_parameters>
+Branch_surface_report make_branch_surface(const Tree_skeleton<Kernel>& tree,
+                                          FaceGraph& mesh,
+                                          const NamedParameters& np = NamedParameters())
+{
+  std::vector<typename Kernel::Point_3> points;
+  std::vector<std::array<std::size_t, 3>> triangles;
+  const Branch_surface_report report = make_branch_surface(tree, points, triangles, np);
+  const auto point_map = get(CGAL::vertex_point, mesh);
+  using Vertex = typename boost::graph_traits<FaceGraph>::vertex_descriptor;
+  using Point = typename boost::property_traits<std::decay_t<decltype(point_map)>>::value_type;
+  std::vector<Vertex> vertices;
+  vertices.reserve(points.size());
+  for (const auto& p : points) {
+    vertices.push_back(add_vertex(mesh));
+    put(point_map, vertices.back(), Point(p.x(), p.y(), p.z()));
+  }
+  for (const auto& t : triangles) {
+    const std::array<Vertex, 3> corners = {vertices[t[0]], vertices[t[1]], vertices[t[2]]};
+    const auto face = CGAL::Euler::add_face(corners, mesh);
+    CGAL_assertion(face != boost::graph_traits<FaceGraph>::null_face()); // a closed 2-manifold
+    static_cast<void>(face);
+  }
+  return report;
 }
 
 /// \cond

@@ -231,6 +231,8 @@ Input_options read_skeleton_options(const NamedParameters& np, const std::string
                              tags::point_is_dense_map_t,
                              tags::node_point_map_t,
                              tags::node_radius_map_t,
+                             tags::node_radius_error_map_t,
+                             tags::node_branch_map_t,
                              tags::skeleton_method_t,
                              tags::slice_options_t,
                              tags::scanner_positions_t,

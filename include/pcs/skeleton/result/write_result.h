@@ -89,8 +89,36 @@ void clear_graph(Graph& graph)
 
 } // namespace internal
 
-/// Replaces the contents of a graph that is not a `Tree_skeleton`. Writes positions and radii to
-/// the maps in the named parameters.
+namespace internal {
+
+/// Writes one value per vertex to the map of a named parameter, if it is given. `value(k)` is the
+/// value of node `k`; `Is_value` holds for the permitted value types of the map.
+template <class Tag, template <class> class Is_value, class NamedParameters, class Vertex, class F>
+void write_attribute(const NamedParameters& np,
+                     Tag tag,
+                     const std::vector<Vertex>& vertex,
+                     const F& value)
+{
+  if constexpr (pcs::internal::is_given_v<NamedParameters, Tag>) {
+    const auto map = CGAL::parameters::get_parameter(np, tag);
+    using Map = std::decay_t<decltype(map)>;
+    using Value = pcs::Map_value<Map>;
+    constexpr bool is_map_ok = Is_value<Value>::value && is_map_for_v<Map, Vertex, Value>;
+    static_assert(
+        is_map_ok,
+        "pcs::extract_tree_skeleton(): `node_branch_map` must store integers, and "
+        "`node_radius_error_map` floating point numbers; both must be writable and accept "
+        "a vertex of the result as key");
+    if constexpr (is_map_ok)
+      for (std::size_t k = 0; k < vertex.size(); ++k)
+        put(map, vertex[k], static_cast<Value>(value(k)));
+  }
+}
+
+} // namespace internal
+
+/// Replaces the contents of a graph that is not a `Tree_skeleton`. Writes the attributes of the
+/// nodes to the maps in the named parameters.
 template <class NamedParameters, class Graph>
 void write_graph(const Branch_tree& found,
                  const Scan_frame& frame,
@@ -125,6 +153,16 @@ void write_graph(const Branch_tree& found,
       if (from.parent != none)
         add_edge(vertex[from.parent], vertex[k], tree);
     }
+    internal::write_attribute<pcs::internal_np::node_radius_error_map_t, std::is_floating_point>(
+        np,
+        pcs::internal_np::node_radius_error_map,
+        vertex,
+        [&](std::size_t k) { return frame.unit * found.nodes[k].radius_error; });
+    internal::write_attribute<pcs::internal_np::node_branch_map_t, std::is_integral>(
+        np,
+        pcs::internal_np::node_branch_map,
+        vertex,
+        [&](std::size_t k) { return found.nodes[k].branch; });
   }
 }
 
