@@ -289,8 +289,8 @@ inline double jackknife_factor(double fraction)
 /// Adds a warning about values that differ between resampled copies.
 inline void warn_of_spread(const Skeleton_report& r, std::vector<std::string>& sentences)
 {
-  // relative deviations that most virtual scans do not reach [-]
-  constexpr double max_height = 0.01, max_diameter = 0.02, max_trunk = 0.05, max_volume = 0.05;
+  // relative deviations that eight of ten virtual scans do not reach [-]
+  constexpr double max_height = 0.005, max_diameter = 0.01, max_trunk = 0.04, max_volume = 0.03;
   constexpr double max_root = 0.04; // of the breast height [-]
   const Skeleton_spread& s = r.spread;
   std::string list;
@@ -303,11 +303,12 @@ inline void warn_of_spread(const Skeleton_report& r, std::vector<std::string>& s
     sentences.push_back(std::to_string(s.number_of_empty_copies) +
                         " resampled copies of this scan show no tree");
   if (s.is_leaf_removal_changed)
-    sentences.push_back("whether the scan has leaves is nearly undecided: " +
-                        std::to_string(s.number_of_leafy_copies) + " of " +
-                        std::to_string(s.number_of_copies) +
-                        " resampled copies have leaves, unlike the scan itself, and were followed "
-                        "(do_remove_leaves(true) or do_remove_leaves(false) decides)");
+    sentences.push_back(
+        "whether the scan has leaves is nearly undecided: " +
+        std::to_string(s.number_of_leafy_copies) + " of " + std::to_string(s.number_of_copies) +
+        " resampled copies have leaves; their majority contradicts the scan and was "
+        "followed "
+        "(do_remove_leaves(true) or do_remove_leaves(false) decides)");
   if (s.number_of_copies < 2)
     return;
   add("height", s.height, r.height, max_height);
