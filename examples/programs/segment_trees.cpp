@@ -10,6 +10,7 @@
 #include "common/up_direction.h"
 #include "scan/rays_without_return.h"
 #include "scan/tree_foot.h"
+#include <pcs/IO/internal/extensions.h>
 #include <pcs/IO/points/Point_table.h>
 #include <pcs/IO/read_points.h>
 #include <pcs/IO/write_points.h>
@@ -49,7 +50,7 @@ struct Options
 const char* help()
 {
   return R"(Scans: PLY, LAS (LAZ if built with LASzip), PCD, PTX, OFF, OBJ, or text (xyz, txt, csv,
-asc, pts, pwn).
+asc, pts, pwn), also compressed by gzip (.gz) if built with zlib.
 Folder: DIR/SCAN_1.ply, DIR/SCAN_2.ply, ..., trees with the thickest stems first, with all
 properties of their points and the foot of the tree as a comment. extract_tree_skeleton reads the
 foot, and processes all files with its own --folder.
@@ -83,7 +84,7 @@ void declare(CLI::App& app, Options& options)
 /// Returns the path of the file of a tree; numbers begin with 1.
 std::string file_of_tree(const Options& options, std::size_t tree)
 {
-  const std::filesystem::path scan(options.input);
+  const std::filesystem::path scan(pcs::IO::internal::without_gz(options.input));
   const std::string name = scan.stem().string() + "_" + std::to_string(tree + 1) + ".ply";
   return (std::filesystem::path(options.folder) / name).string();
 }

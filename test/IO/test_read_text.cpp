@@ -251,7 +251,7 @@ BOOST_AUTO_TEST_CASE(unknown_formats_are_refused)
   refuses("a.e57",
           "ASTM-E57",
           "files of type e57 are not supported; convert the file to LAS: pdal");
-  refuses("a.csv.gz", "1 2 3", "gunzip -k FILE");
+  refuses("a.csv.bz2", "1 2 3", "bunzip2 -k FILE");
   refuses("a.abc", "1 2 3", "unknown format 'abc'");
   refuses("a", "1 2 3", "a name without extension, expected ply");
   refuses("a.laz", "whatever", "expected 'LASF'");

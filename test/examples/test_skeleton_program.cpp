@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <examples/Program_run.h>
 #include <filesystem>
@@ -494,6 +495,23 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_and_touches_no_file)
   write("in_points.ply", content("in.ply"));
   refuses("--input in.ply in_points.ply --folder . --also points", "the same file");
 }
+
+#ifdef PCS_WITH_ZLIB
+BOOST_AUTO_TEST_CASE(packed_files_are_read_as_their_contents)
+{
+  write("given.swc", "1 0 500000 5000000 0 9 -1\n2 0 500000 5000000 2.5 9 1\n");
+  BOOST_TEST_REQUIRE(run("--quiet --input tree.xyz --swc a.swc --skeleton given.swc") == 0, err);
+  BOOST_TEST_REQUIRE(std::system(("gzip " + path("tree.xyz") + " " + path("given.swc")).c_str()) ==
+                     0);
+  BOOST_TEST_REQUIRE(run("--quiet --input tree.xyz.gz --swc b.swc --skeleton given.swc.gz") == 0,
+                     err);
+  BOOST_TEST(content("b.swc") == content("a.swc"));
+  // the results of a batch have the name without both extensions
+  BOOST_TEST(run("--quiet --input tree.xyz.gz --folder out") == 0, err);
+  BOOST_TEST(exists("out/tree.swc"));
+  refuses("--input tree.xyz.gz --swc old.swc --points a.ply.gz", "gzip FILE");
+}
+#endif
 
 BOOST_AUTO_TEST_CASE(a_batch_goes_on_and_resumes)
 {

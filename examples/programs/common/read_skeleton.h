@@ -5,6 +5,7 @@
 #ifndef PCS_EXAMPLES_PROGRAMS_COMMON_READ_SKELETON_H
 #define PCS_EXAMPLES_PROGRAMS_COMMON_READ_SKELETON_H
 
+#include <pcs/IO/internal/extensions.h>
 #include <pcs/IO/read_cylinders.h>
 #include <pcs/IO/read_swc.h>
 #include <pcs/IO/read_tree_csv.h>
@@ -13,20 +14,18 @@
 #include <pcs/core/errors.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <vector>
 
 namespace program {
 
 /*!
-  Reads a skeleton: .txtskl, .csv, or SWC with any other extension. Files .csv and .txt may be
-  tables of cylinders. `ids` receives the ids of the nodes, none if the format has none. Of a file
-  with several trees, the tree `root_number` is read; 1 is the largest. Formats of a single tree
-  ignore the number.
+  Reads a skeleton: .txtskl, .csv, or SWC with any other extension; the extension .gz of compressed
+  files is skipped. Files .csv and .txt may be tables of cylinders. `ids` receives the ids of the
+  nodes, none if the format has none. Of a file with several trees, the tree `root_number` is read;
+  1 is the largest. Formats of a single tree ignore the number.
 */
 template <class Kernel>
 pcs::IO::Tree_selection read_skeleton(const std::string& path,
@@ -34,18 +33,16 @@ pcs::IO::Tree_selection read_skeleton(const std::string& path,
                                       std::vector<std::int64_t>& ids,
                                       std::size_t root_number = 1)
 {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) {
-    return static_cast<char>(std::tolower(c));
-  });
+  namespace files = pcs::IO::internal;
+  const std::string extension = files::extension_of(files::without_gz(path));
   ids.clear();
-  if (extension == ".txtskl") {
+  if (extension == "txtskl") {
     pcs::IO::read_txtskl<Kernel>(path, tree);
     return {1, num_vertices(tree), 0};
   }
-  if ((extension == ".csv" || extension == ".txt") && pcs::IO::is_cylinder_table(path))
+  if ((extension == "csv" || extension == "txt") && pcs::IO::is_cylinder_table(path))
     return pcs::IO::read_cylinders<Kernel>(path, tree, ids, root_number);
-  if (extension == ".csv") {
+  if (extension == "csv") {
     std::vector<std::size_t> hits;
     pcs::IO::read_tree_csv<Kernel>(path, tree, hits, ids);
     return {1, num_vertices(tree), 0};
@@ -53,7 +50,7 @@ pcs::IO::Tree_selection read_skeleton(const std::string& path,
   try {
     return pcs::IO::read_swc<Kernel>(path, tree, ids, root_number);
   } catch (const pcs::IO_error& error) {
-    if (extension != ".txt")
+    if (extension != "txt")
       throw;
     const std::string what = error.what();
     throw pcs::IO_error(path,

@@ -163,7 +163,8 @@ inline void declare(CLI::App& app, Options& o)
   app.footer(
       R"(Give --tree and --skeleton once for each tree, at least twice. Points: PLY, LAS, OFF, PCD,
 PTX, OBJ or text. Skeletons: SWC; CSV; tables of cylinders (.csv or .txt, of
-extract_tree_skeleton, TreeQSM, SimpleForest, aRchi, rTwig); .txtskl with layers of branches.
+extract_tree_skeleton, TreeQSM, SimpleForest, aRchi, rTwig); .txtskl with layers of branches. Both
+may be compressed by gzip (.gz) if built with zlib.
 Without --skeleton, skeletons are extracted from the points; without --tree, only skeletons are
 made.
 

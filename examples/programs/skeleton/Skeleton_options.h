@@ -6,6 +6,7 @@
 #define PCS_EXAMPLES_PROGRAMS_SKELETON_SKELETON_OPTIONS_H
 
 #include "common/Distinct_files.h"
+#include <pcs/IO/internal/extensions.h>
 #include <pcs/core/Skeleton_options.h>
 #include <pcs/core/errors.h>
 
@@ -107,7 +108,7 @@ inline nlohmann::ordered_json to_json(const Skeleton_options& o)
 inline const char* skeleton_help()
 {
   return R"(Scans: PLY, LAS (LAZ if built with LASzip), PCD, PTX, OFF, OBJ, or text (xyz, txt, csv,
-asc, pts, pwn). A property `wood`
+asc, pts, pwn), also compressed by gzip (.gz) if built with zlib. A property `wood`
 (1: wood, 0: leaf) is used if it exists, and `station` as the station of a point, whose
 registration is corrected (--stations point_source_id for terrestrial LAS files). Rays without
 return (alpha 0 in ray clouds, which have `time` and `alpha`) are left out, with a warning. Lengths
@@ -295,10 +296,16 @@ inline void check_single(const Skeleton_options& options)
   }
 }
 
+/// Returns the name of the results of one scan of a batch: `a` for `a.ply` and `a.ply.gz`.
+inline std::string name_of_scan(const std::string& input)
+{
+  return std::filesystem::path(pcs::IO::internal::without_gz(input)).stem().string();
+}
+
 /// Returns the common beginning of the paths of the results of one scan of a batch.
 inline std::string name_of_results(const std::string& input, const std::string& folder)
 {
-  return (std::filesystem::path(folder) / std::filesystem::path(input).stem()).string();
+  return (std::filesystem::path(folder) / name_of_scan(input)).string();
 }
 
 /// Returns the options for one scan of a batch, with the paths of its results.
@@ -353,7 +360,7 @@ inline void check_batch(const Skeleton_options& options)
     throw pcs::Invalid_input("--skeleton, --root and --scanner belong to one scan, not to several");
   std::map<std::string, std::string> names;
   for (const std::string& input : options.inputs) {
-    const auto [at, is_new] = names.emplace(std::filesystem::path(input).stem().string(), input);
+    const auto [at, is_new] = names.emplace(name_of_scan(input), input);
     if (!is_new)
       throw pcs::Invalid_input("the results of " + at->second + " and " + input +
                                " would have the same name");

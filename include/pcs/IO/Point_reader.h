@@ -32,6 +32,11 @@ namespace IO {
   file without them is read by its extension: pcd, ptx, obj, or text if it is xyz, txt, csv, asc,
   pts or pwn.
 
+  A file that is compressed by gzip is unpacked while it is read, where zlib is available (CMake
+  option `PCS_WITH_ZLIB`); the extension `.gz` is skipped. Formats that state counts (PLY, OFF, LAS,
+  PCD, PTX) are unpacked twice, to compare the counts with the unpacked size, and LAS files with
+  data after the points up to four times. LAZ inside gzip is refused.
+
   The reader checks its input. Counts are compared with the size of the file before memory is
   allocated. Coordinates must be finite, other properties need not be. The file must end where its
   header states. A violation throws `pcs::IO_error` with the file, the line or byte, and the

@@ -5,23 +5,36 @@
 #ifndef PCS_IO_INTERNAL_INPUT_FILE_H
 #define PCS_IO_INTERNAL_INPUT_FILE_H
 
+#include <pcs/IO/internal/gzip.h>
 #include <pcs/core/errors.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <memory>
+#include <optional>
+#include <streambuf>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 namespace pcs {
 namespace IO {
 namespace internal {
 
+/*
+  A file that is compressed by gzip, which its first two bytes show, is unpacked while it is read;
+  all positions are those in the unpacked data. Its size is only known after it was unpacked to its
+  end, because the size that it states need not be true. `size()` does so once, in a pass of its
+  own and without keeping the data. Hence readers compare counts with the true size before they
+  allocate memory, and readers that compare no counts need no second pass.
+*/
 class Input_file
 {
 public:
@@ -36,33 +49,56 @@ public:
     m_size = std::filesystem::file_size(path, error);
     if (error)
       throw IO_error(path, "cannot be read: " + error.message());
-    m_file.pubsetbuf(nullptr, 0); // this class buffers the file itself
-    if (m_file.open(path, std::ios::in | std::ios::binary) == nullptr)
-      throw IO_error(path, "cannot be opened for reading");
+    open_plain();
+    if (is_gzip()) {
+      m_is_compressed = true;
+      m_size.reset();
+      m_begin = m_end = 0;
+      m_file = open_gzip(path);
+    }
   }
 
   const std::string& path() const { return m_path; }
-  std::uint64_t size() const { return m_size; }
+  //! whether the file is compressed by gzip
+  bool is_compressed() const { return m_is_compressed; }
+  //! returns how commands of a shell in messages refer to the contents of the file
+  const char* shell_name() const { return m_is_compressed ? "<(gunzip -c FILE)" : "FILE"; }
+  //! returns the number of bytes; the first call unpacks a compressed file to its end
+  std::uint64_t size() const
+  {
+    if (!m_size)
+      m_size = count_unpacked();
+    return *m_size;
+  }
   //! returns the position of the next byte
   std::uint64_t position() const { return m_buffer_position + m_begin; }
   //! returns the number of unread bytes, relative to the size of the file when it was opened
-  std::uint64_t remaining() const { return m_size > position() ? m_size - position() : 0; }
+  std::uint64_t remaining() const { return size() > position() ? size() - position() : 0; }
+  //! whether there are no more bytes
+  bool is_at_end() { return m_begin == m_end && !fill(); }
   //! returns the number of the last line that `read_line()` returned, from 1
   std::uint64_t line_number() const { return m_line_number; }
 
   //! reads exactly `n` bytes
   void read(void* to, std::size_t n)
   {
+    if (read_at_most(to, n) < n)
+      fail_at_end();
+  }
+
+  //! reads `n` bytes, or fewer at the end of the file; returns their number
+  std::size_t read_at_most(void* to, std::size_t n)
+  {
     auto* out = static_cast<char*>(to);
-    while (n > 0) {
-      if (m_begin == m_end && !fill())
-        fail_at_end();
-      const std::size_t step = std::min(n, m_end - m_begin);
+    std::size_t left = n;
+    while (left > 0 && !is_at_end()) {
+      const std::size_t step = std::min(left, m_end - m_begin);
       std::memcpy(out, m_buffer.data() + m_begin, step);
       m_begin += step;
       out += step;
-      n -= step;
+      left -= step;
     }
+    return n - left;
   }
 
   //! skips `n` bytes
@@ -79,8 +115,12 @@ public:
   //! moves to the byte `to` of the file
   void seek(std::uint64_t to)
   {
+    if (to >= m_buffer_position && to - m_buffer_position <= m_end) { // is in the buffer
+      m_begin = static_cast<std::size_t>(to - m_buffer_position);
+      return;
+    }
     const auto target = static_cast<std::streamoff>(to);
-    if (m_file.pubseekoff(target, std::ios::beg, std::ios::in) != std::streampos(target))
+    if (m_file->pubseekoff(target, std::ios::beg, std::ios::in) != std::streampos(target))
       throw IO_error(m_path, "cannot move to byte " + std::to_string(to));
     m_buffer_position = to;
     m_begin = m_end = 0;
@@ -124,17 +164,47 @@ public:
   }
   [[noreturn]] void fail_at_byte(std::uint64_t byte, const std::string& what) const
   {
-    throw IO_error(m_path, "byte " + std::to_string(byte) + ": " + what);
+    throw IO_error(m_path,
+                   "byte " + std::to_string(byte) +
+                       (m_is_compressed ? " of the unpacked file: " : ": ") + what);
   }
   [[noreturn]] void fail_at_end() const
   {
-    fail_at_byte(m_size, "the file ends here, more data was expected");
+    fail_at_byte(size(), "the file ends here, more data was expected");
   }
 
 private:
   static constexpr std::size_t buffer_size = std::size_t(1) << 18;
   // bounds the memory of a line; lines of points and faces in real files are far shorter
   static constexpr std::size_t longest_line = std::size_t(1) << 24;
+
+  void open_plain()
+  {
+    auto file = std::make_unique<std::filebuf>();
+    file->pubsetbuf(nullptr, 0); // this class buffers the file itself
+    if (file->open(m_path, std::ios::in | std::ios::binary) == nullptr)
+      throw IO_error(m_path, "cannot be opened for reading");
+    m_file = std::move(file);
+  }
+
+  //! compares the first bytes, which remain unread
+  bool is_gzip()
+  {
+    return fill() && m_end >= gzip_magic.size() &&
+           std::equal(gzip_magic.begin(), gzip_magic.end(), m_buffer.begin(), [](auto a, auto b) {
+             return a == static_cast<unsigned char>(b);
+           });
+  }
+
+  std::uint64_t count_unpacked() const
+  {
+    const std::unique_ptr<std::streambuf> file = open_gzip(m_path);
+    std::vector<char> bytes(buffer_size);
+    std::uint64_t count = 0;
+    for (std::streamsize n = 1; n > 0; count += static_cast<std::uint64_t>(n))
+      n = file->sgetn(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    return count;
+  }
 
   static std::string_view without_carriage_return(std::string_view line)
   {
@@ -146,7 +216,7 @@ private:
   std::size_t read_some(std::size_t at)
   {
     const auto n =
-        m_file.sgetn(m_buffer.data() + at, static_cast<std::streamsize>(m_buffer.size() - at));
+        m_file->sgetn(m_buffer.data() + at, static_cast<std::streamsize>(m_buffer.size() - at));
     return n > 0 ? static_cast<std::size_t>(n) : 0;
   }
 
@@ -179,8 +249,9 @@ private:
   }
 
   std::string m_path;
-  std::filebuf m_file;
-  std::uint64_t m_size = 0;
+  std::unique_ptr<std::streambuf> m_file;
+  mutable std::optional<std::uint64_t> m_size; // not known yet of a compressed file
+  bool m_is_compressed = false;
   std::vector<char> m_buffer;
   std::uint64_t m_buffer_position = 0; // of the first byte of the buffer in the file
   std::size_t m_begin = 0, m_end = 0;  // unread part of the buffer

@@ -5,6 +5,7 @@
 #ifndef PCS_IO_INTERNAL_OUTPUT_FILE_H
 #define PCS_IO_INTERNAL_OUTPUT_FILE_H
 
+#include <pcs/IO/internal/extensions.h>
 #include <pcs/core/errors.h>
 
 #include <cerrno>
@@ -30,7 +31,8 @@ namespace internal {
   Writes to a temporary file in the folder of the target; `commit()` renames it to the target. On
   systems that support it, the temporary file has no name until then. If the program is killed, no
   file remains. An existing target that is not a regular file, such as a device or a pipe, is
-  written directly, because renaming would replace the device itself.
+  written directly, because renaming would replace the device itself. Names with the extension
+  `.gz` are refused, because nothing is compressed.
 */
 class Output_file
 {
@@ -38,6 +40,7 @@ public:
   explicit Output_file(const std::string& path) : m_path(path)
   {
     namespace fs = std::filesystem;
+    refuse_gz(path);
     std::error_code error;
     const fs::file_status status = fs::status(path, error);
     if (fs::is_directory(status))

@@ -7,10 +7,10 @@
 
 #include <pcs/IO/internal/Input_file.h>
 #include <pcs/IO/internal/Off_reader.h>
+#include <pcs/IO/internal/extensions.h>
 #include <pcs/IO/points/Point_schema.h>
 #include <pcs/core/errors.h>
 
-#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <optional>
@@ -21,18 +21,6 @@ namespace pcs {
 namespace IO {
 namespace internal {
 
-//! returns the extension in lower case and without its dot
-inline std::string extension_of(const std::string& path)
-{
-  std::string text = std::filesystem::path(path).extension().string();
-  if (!text.empty())
-    text.erase(0, 1);
-  for (char& c : text)
-    if (c >= 'A' && c <= 'Z')
-      c = static_cast<char>(c - 'A' + 'a');
-  return text;
-}
-
 //! returns an instruction for converting unsupported files with this extension; empty: none
 inline std::string conversion_of(const std::string& extension)
 {
@@ -41,7 +29,7 @@ inline std::string conversion_of(const std::string& extension)
     const char* extension;
     const char* sentence;
   };
-  constexpr std::array<Conversion, 14> conversions = {{
+  constexpr std::array<Conversion, 13> conversions = {{
       {"e57", "convert the file to LAS: pdal translate a.e57 a.las, or CloudCompare"},
       {"bin", "convert the file to PLY or LAS with CloudCompare"},
       {"rcp", "export the project as PTS with Autodesk ReCap"},
@@ -52,7 +40,6 @@ inline std::string conversion_of(const std::string& extension)
       {"rxp", "export the scan as LAS with RiSCAN PRO"},
       {"rdbx", "export the scan as LAS with RiSCAN PRO"},
       {"ptg", "export the scan as PTX or PTS with Leica Cyclone"},
-      {"gz", "unpack the file: gunzip -k FILE"},
       {"bz2", "unpack the file: bunzip2 -k FILE"},
       {"zip", "unpack the file: unzip FILE"},
       {"7z", "unpack the file: 7z x FILE"},
@@ -63,10 +50,9 @@ inline std::string conversion_of(const std::string& extension)
   return {};
 }
 
-//! returns the format that the extension of a file indicates; throws if it is unknown
-inline File_format format_by_extension(const std::string& path)
+//! returns the format with this extension; throws if it is unknown
+inline File_format format_of_extension(const std::string& path, const std::string& extension)
 {
-  const std::string extension = extension_of(path);
   if (extension == "ply")
     return File_format::ply;
   if (extension == "off")
@@ -95,15 +81,23 @@ inline File_format format_by_extension(const std::string& path)
                      "also laz, pcd or ptx");
 }
 
-//! returns the format that the first bytes of a file indicate, otherwise that of its extension
+//! returns the format that the extension of a file to be written indicates; throws if it is
+//! unknown
+inline File_format format_by_extension(const std::string& path)
+{
+  refuse_gz(path);
+  return format_of_extension(path, extension_of(path));
+}
+
+//! returns the format that the first bytes of a file indicate, otherwise that of its extension;
+//! the bytes are those of the unpacked file, and the extension `.gz` is skipped
 inline File_format format_by_content(const std::string& path)
 {
   Input_file file(path);
-  if (file.size() == 0)
+  if (file.is_at_end())
     throw IO_error(path, "the file is empty");
   std::array<char, 8> bytes{};
-  file.read(bytes.data(),
-            static_cast<std::size_t>(std::min<std::uint64_t>(bytes.size(), file.size())));
+  file.read_at_most(bytes.data(), bytes.size());
   const std::string_view text(bytes.data(), bytes.size());
   const std::string_view word =
       text.substr(0, text.find_first_of(std::string_view(" \t\r\n\0", 5)));
@@ -115,7 +109,8 @@ inline File_format format_by_content(const std::string& path)
     return File_format::pcd;
   if (is_off_keyword(word))
     return File_format::off;
-  return format_by_extension(path); // the reader of that format reports missing data
+  // the reader of that format reports missing data
+  return format_of_extension(path, extension_of(without_gz(path)));
 }
 
 } // namespace internal

@@ -11,6 +11,7 @@
 #include <pcs/core/errors.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -29,16 +30,18 @@ inline std::string laz_conversions()
          "a.las";
 }
 
-//! whether the header of a LAS file marks its points as compressed
+//! whether the header of a LAS file marks its points as compressed; throws if the file is also
+//! compressed by gzip, because LASzip reads from the file itself
 inline bool has_compressed_points(const std::string& path)
 {
   Input_file file(path);
-  if (file.size() <= las_header::point_format)
-    return false;
-  unsigned char format = 0;
-  file.skip(las_header::point_format);
-  file.read(&format, 1);
-  return format >= las_header::compressed_bit;
+  std::array<unsigned char, las_header::point_format + 1> head{};
+  const bool is_compressed = file.read_at_most(head.data(), head.size()) == head.size() &&
+                             head.back() >= las_header::compressed_bit;
+  if (is_compressed && file.is_compressed())
+    throw IO_error(path,
+                   "a LAZ file inside a gzip file is not read; unpack the file: gunzip -k FILE");
+  return is_compressed;
 }
 
 #ifdef PCS_WITH_LASZIP

@@ -52,7 +52,7 @@ public:
 
   explicit Table_head(const std::string& path) : m_file(path)
   {
-    if (m_file.size() == 0)
+    if (m_file.is_at_end())
       throw IO_error(path, "the file is empty, expected a point");
     if (!find_first_row()) {
       if (!m_names.empty())

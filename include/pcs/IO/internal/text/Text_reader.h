@@ -84,7 +84,8 @@ public:
     throw IO_error(m_file.path(),
                    "line " + std::to_string(location) + ": " + what +
                        "; to remove points without coordinates: awk " + awk_separator() + "'NR < " +
-                       std::to_string(m_head.first_row) + " || (" + digits + ")' FILE > NEW_FILE");
+                       std::to_string(m_head.first_row) + " || (" + digits + ")' " +
+                       m_file.shell_name() + " > NEW_FILE");
   }
 
 private:
@@ -165,7 +166,7 @@ private:
                   : "; a comma may only separate decimals, not thousands";
     else if (!is_coordinate_name(name))
       text += "; to remove the column: awk " + awk_separator() + "'{$" + std::to_string(i + 1) +
-              "=\"\"}1' FILE > NEW_FILE";
+              "=\"\"}1' " + m_file.shell_name() + " > NEW_FILE";
     else if (!m_head.has_names)
       text += "; unless the first three columns are x, y and z, add a first line with the names "
               "of all columns";
@@ -199,8 +200,8 @@ private:
     throw IO_error(m_file.path(),
                    "line " + std::to_string(m_head.first_row) + ": the first column counts the " +
                        "rows from " + first + ", x was expected; add a first line with the names " +
-                       "of the columns: sed '1i # id x y z" + others +
-                       "' FILE > NEW_FILE, or '# "
+                       "of the columns: sed '1i # id x y z" + others + "' " + m_file.shell_name() +
+                       " > NEW_FILE, or '# "
                        "x y z c3" +
                        others + "' if the count is x");
   }
