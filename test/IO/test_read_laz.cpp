@@ -105,17 +105,6 @@ BOOST_AUTO_TEST_CASE(without_laszip_the_message_names_programs_that_convert)
 
 #endif
 
-BOOST_AUTO_TEST_CASE(writing_names_the_program_that_compresses)
-{
-  const pcs::IO::Point_table table = read("a.las", Las_file().bytes());
-  try {
-    pcs::IO::write_points(path("b.laz"), table);
-    BOOST_TEST(false);
-  } catch (const pcs::IO_error& e) {
-    BOOST_TEST(std::string(e.what()).find("laszip -i a.las -o a.laz") != std::string::npos);
-  }
-}
-
 BOOST_AUTO_TEST_SUITE_END()
 
 } // namespace test_read_laz

@@ -302,7 +302,7 @@ BOOST_AUTO_TEST_CASE(bad_targets_are_errors)
 {
   BOOST_CHECK_THROW(pcs::IO::write_points(path("absent/a.ply"), one_point()), IO_error);
   BOOST_CHECK_THROW(pcs::IO::write_points(folder.string(), one_point()), IO_error);
-  BOOST_CHECK_THROW(pcs::IO::write_points(path("a.laz"), one_point()), IO_error);
+  BOOST_CHECK_THROW(pcs::IO::write_points(path("a.pcd"), one_point()), IO_error);
   BOOST_CHECK_THROW(pcs::IO::write_points(path("a.unknown"), one_point()), IO_error);
   BOOST_TEST(number_of_files() == 0u);
 }

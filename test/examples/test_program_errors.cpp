@@ -279,7 +279,10 @@ BOOST_FIXTURE_TEST_CASE(files_are_checked_before_the_work, Deform_run)
   refuses_files("--input in.ply --edit . --output out.ply", {"expected an edit in JSON"});
   refuses_files(in + " --output no/out.ply", {"no/out.ply: cannot be opened for writing"});
   refuses_files(in + " --output .", {"."});
-  refuses_files(in + " --output out.laz", {"out.laz"});
+#ifndef PCS_WITH_LASZIP
+  refuses_files(in + " --output out.laz", {"out.laz", "LASzip"});
+#endif
+  refuses_files(in + " --output out.ply.gz", {"out.ply.gz", "gzip FILE"});
   refuses_files(in + " --output out", {"out: a name without extension"});
   refuses_files(in + " --output out.off", {"out.off", "OFF cannot store the property"});
   refuses_files(in + " --output out.ply --report no/report.json",

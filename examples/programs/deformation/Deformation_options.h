@@ -47,9 +47,9 @@ Scale comes first, then rotation, then translation. The center is the fixed poin
 rotation and scale; without it that is the centroid of the selected points. The matrix
 must be made of a rotation, one scale and a translation. Bounds are inclusive.
 
-Files: PLY, LAS, OFF, OBJ, or text (xyz, txt, csv, asc, pts, pwn). The input may also be
-PCD, PTX, LAZ if built with LASzip, or compressed by gzip (.gz) if built with zlib. Order and
-properties of the points are kept, normals nx, ny, nz are rotated. PLY is written in binary, with
+Files: PLY, LAS (LAZ if built with LASzip), OFF, OBJ, or text (xyz, txt, csv, asc, pts, pwn). The
+input may also be PCD, PTX, or compressed by gzip (.gz) if built with zlib. Order and properties of
+the points are kept, normals nx, ny, nz are rotated. PLY is written in binary, with
 coordinates in double precision.
 The faces of a mesh in PLY, OFF or OBJ are kept in these formats; PLY to PLY also keeps lists
 and other elements. Colours of faces in OFF, and normals, textures and groups in OBJ are not

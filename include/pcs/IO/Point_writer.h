@@ -34,8 +34,9 @@ namespace IO {
   Properties are written in the order and type of the schema; coordinates are doubles unless
   `Write_options::keep_coordinate_types` is set. Faces are written if they are passed in
   `Write_options::faces`, to PLY, OFF and OBJ. Text is read back as `float64` columns. OFF and OBJ
-  reject properties that they cannot store. LAS rounds coordinates to its grid and stores properties
-  that its point format lacks as extra bytes.
+  reject properties that they cannot store. LAS and LAZ round coordinates to their grid and store
+  properties that their point format lacks as extra bytes. LAZ needs LASzip (CMake option
+  `PCS_WITH_LASZIP`).
 
   Errors of the file system and of the format throw `pcs::IO_error`, data that do not match the
   schema throw `pcs::Invalid_input`. After either, `commit()` is not possible.

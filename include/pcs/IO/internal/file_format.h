@@ -77,8 +77,8 @@ inline File_format format_of_extension(const std::string& path, const std::strin
   throw IO_error(path,
                  (extension.empty() ? std::string("a name without extension")
                                     : "unknown format '" + extension + "'") +
-                     ", expected ply, las, off, obj, xyz, txt, csv, asc, pts or pwn, or for input "
-                     "also laz, pcd or ptx");
+                     ", expected ply, las, laz, off, obj, xyz, txt, csv, asc, pts or pwn, or for "
+                     "input also pcd or ptx");
 }
 
 //! returns the format that the extension of a file to be written indicates; throws if it is

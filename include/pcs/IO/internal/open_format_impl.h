@@ -11,6 +11,7 @@
 #include <pcs/IO/internal/las/Las_reader.h>
 #include <pcs/IO/internal/las/Las_writer.h>
 #include <pcs/IO/internal/las/Laz_reader.h>
+#include <pcs/IO/internal/las/Laz_writer.h>
 #include <pcs/IO/internal/open_format.h>
 #include <pcs/IO/internal/ply/Ply_reader.h>
 #include <pcs/IO/internal/ply/Ply_writer.h>
@@ -42,6 +43,22 @@ inline std::unique_ptr<Format_reader> open_las_reader(const std::string& path)
 #endif
 }
 
+inline std::unique_ptr<Format_writer>
+open_las_writer(const std::string& path, const Point_schema& schema, const Write_options& options)
+{
+  if (extension_of(path) != "laz")
+    return std::make_unique<Las_writer>(path, schema, options);
+#ifdef PCS_WITH_LASZIP
+  return std::make_unique<Laz_writer>(path, schema, options);
+#else
+  throw IO_error(path,
+                 "LAZ is written with LASzip only, and this program was built without it; build "
+                 "pcs with LASzip (package liblaszip-dev where there is one, CMake variable "
+                 "PCS_WITH_LASZIP), or write a file with the extension las and compress it: laszip "
+                 "-i a.las -o a.laz, or pdal translate a.las a.laz");
+#endif
+}
+
 template <File_format format>
 std::unique_ptr<Format_reader> open_reader(const std::string& path,
                                            [[maybe_unused]] bool do_keep_faces)
@@ -66,13 +83,9 @@ template <File_format format>
 std::unique_ptr<Format_writer>
 open_writer(const std::string& path, const Point_schema& schema, const Write_options& options)
 {
-  if constexpr (format == File_format::las) {
-    if (extension_of(path) == "laz")
-      throw IO_error(path,
-                     "LAZ cannot be written; write a file with the extension las and compress it: "
-                     "laszip -i a.las -o a.laz");
-    return std::make_unique<Las_writer>(path, schema, options);
-  } else if constexpr (format == File_format::off)
+  if constexpr (format == File_format::las)
+    return open_las_writer(path, schema, options);
+  else if constexpr (format == File_format::off)
     return std::make_unique<Off_writer>(path, schema, options);
   else if constexpr (format == File_format::ply)
     return std::make_unique<Ply_writer>(path, schema, options);

@@ -26,7 +26,7 @@ enum class File_format : std::uint8_t {
   ply,       //!< ascii, binary little endian, binary big endian
   text,      //!< one point per line: xyz, txt, csv, asc, pts, pwn
   off,       //!< OFF, NOFF, COFF, CNOFF
-  las,       //!< LAS 1.0 to 1.4, and reading LAZ where LASzip is available
+  las,       //!< LAS 1.0 to 1.4, and LAZ where LASzip is available
   pcd,       //!< ascii, binary, binary_compressed; reading only
   ptx,       //!< one or several scans with their poses; reading only
   obj        //!< the vertices and faces

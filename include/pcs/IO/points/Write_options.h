@@ -49,8 +49,9 @@ struct Write_options
   std::optional<char> text_separator;
   Text_header text_header = Text_header::automatic;
 
-  //! LAS: length of one step of the stored integers [L], and the coordinate of the integer 0 [L].
-  //! By default those of the LAS file that was read; `write_points()` computes them otherwise.
+  //! LAS and LAZ: length of one step of the stored integers [L], and the coordinate of the integer
+  //! 0 [L]. By default those of the LAS file that was read; `write_points()` computes them
+  //! otherwise.
   std::optional<std::array<double, 3>> las_scale;
   std::optional<std::array<double, 3>> las_offset;
 

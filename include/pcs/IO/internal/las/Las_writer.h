@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Writes points as an uncompressed LAS file.
+// Writes points as a LAS file: header, records and uncompressed points.
 
 #ifndef PCS_IO_INTERNAL_LAS_LAS_WRITER_H
 #define PCS_IO_INTERNAL_LAS_LAS_WRITER_H
@@ -33,6 +33,21 @@ class Las_writer : public Format_writer
 {
 public:
   Las_writer(const std::string& path, const Point_schema& schema, const Write_options& options)
+    : Las_writer(path, schema, options, Head_later())
+  {
+    write_head();
+  }
+
+protected:
+  struct Head_later
+  {
+  };
+
+  //! prepares header and VLRs, which `write_head()` writes
+  Las_writer(const std::string& path,
+             const Point_schema& schema,
+             const Write_options& options,
+             Head_later)
     : Format_writer(path), m_las(schema.las ? *schema.las : make_las_metadata(schema))
   {
     if (options.las_scale)
@@ -52,13 +67,35 @@ public:
       store_header(las_header::scale + 8 * axis, m_las.scale[axis]);
       store_header(las_header::offset + 8 * axis, m_las.offset[axis]);
     }
-    m_first_point = m_las.header.size() + m_las.vlrs.size();
-    if (m_first_point > std::numeric_limits<std::uint32_t>::max())
+  }
+
+  //! writes header and VLRs
+  void write_head()
+  {
+    const std::size_t first_point = m_las.header.size() + m_las.vlrs.size();
+    if (first_point > std::numeric_limits<std::uint32_t>::max())
       m_file.fail("the variable length records are too long for LAS");
-    store_header(las_header::offset_to_points, static_cast<std::uint32_t>(m_first_point));
+    store_header(las_header::offset_to_points, static_cast<std::uint32_t>(first_point));
     m_file.write(m_las.header.data(), m_las.header.size());
     m_file.write(m_las.vlrs.data(), m_las.vlrs.size());
   }
+
+  //! writes the records of the points
+  virtual void write_records(const Row_block& block)
+  {
+    m_file.write(block.bytes.data(), block.bytes.size());
+  }
+
+  //! writes what has to follow the last record
+  virtual void finish_records() {}
+
+  //! returns the point format without the mark of compressed points
+  unsigned point_format() const
+  {
+    return m_las.header[las_header::point_format] & (las_header::compressed_bit - 1);
+  }
+
+  Las_metadata m_las;
 
 private:
   template <class T>
@@ -98,23 +135,24 @@ private:
       }
       ++m_by_return[(row[field.offset] >> field.shift) & mask];
     }
-    m_file.write(block.bytes.data(), block.bytes.size());
+    write_records(block);
   }
 
   void finish(std::uint64_t number_of_points) override
   {
+    finish_records();
+    const std::uint64_t tail = m_file.position();
     m_file.write(m_las.tail.data(), m_las.tail.size());
     store_counts(number_of_points);
     store_box(number_of_points > 0);
-    move_tail(m_first_point + number_of_points * m_layout.row_size);
+    move_tail(tail);
     m_file.patch(0, m_las.header.data(), m_las.header.size());
   }
 
   void store_counts(std::uint64_t n)
   {
     const bool is_1_4 = m_las.header[las_header::version_minor] >= 4;
-    const bool has_legacy = m_las.header[las_header::point_format] < 6 &&
-                            n <= std::numeric_limits<std::uint32_t>::max();
+    const bool has_legacy = point_format() < 6 && n <= std::numeric_limits<std::uint32_t>::max();
     if (!is_1_4 && !has_legacy)
       m_file.fail(std::to_string(n) + " points are too many for LAS before version 1.4");
     store_header(las_header::legacy_count, static_cast<std::uint32_t>(has_legacy ? n : 0));
@@ -153,9 +191,7 @@ private:
       move(las_header::first_evlr);
   }
 
-  Las_metadata m_las;
   std::size_t m_return_field = 0;
-  std::uint64_t m_first_point = 0; // [byte]
   std::array<std::uint64_t, 16> m_by_return{};
   std::array<std::int32_t, 3> m_low = {INT32_MAX, INT32_MAX, INT32_MAX};
   std::array<std::int32_t, 3> m_high = {INT32_MIN, INT32_MIN, INT32_MIN};
