@@ -24,6 +24,8 @@ PCS_INSTANTIATE(File_format::text)
 
 template std::unique_ptr<Format_reader> open_reader<File_format::pcd>(const std::string&, bool);
 template std::unique_ptr<Format_reader> open_reader<File_format::ptx>(const std::string&, bool);
+template std::unique_ptr<Format_writer>
+open_writer<File_format::glb>(const std::string&, const Point_schema&, const Write_options&);
 
 } // namespace internal
 } // namespace IO

@@ -290,6 +290,7 @@ BOOST_AUTO_TEST_CASE(a_full_disk_is_an_error)
   for (const auto format : {pcs::IO::File_format::ply,
                             pcs::IO::File_format::text,
                             pcs::IO::File_format::off,
+                            pcs::IO::File_format::glb,
                             pcs::IO::File_format::las}) {
     Write_options options;
     options.format = format;

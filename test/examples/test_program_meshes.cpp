@@ -112,6 +112,21 @@ BOOST_FIXTURE_TEST_CASE(a_deformed_mesh_has_the_same_faces, Mesh_run)
     }
 }
 
+BOOST_FIXTURE_TEST_CASE(a_deformed_mesh_may_be_written_as_gltf, Mesh_run)
+{
+  write_mesh("in.ply");
+  for (const std::string more : {"", " --stream"}) {
+    const int code = run("--input in.ply --edit edit.json --output out.glb" + more);
+    BOOST_TEST_REQUIRE(code == 0, err);
+    const std::string file = content("out.glb");
+    BOOST_TEST(file.substr(0, 4) == "glTF");
+    const Json json = Json::parse(file.substr(20, file.find("BIN") - 4 - 20));
+    BOOST_TEST(json["accessors"][0]["count"] == rings * sides);
+    // two triangles for each of the quadrangles, and one triangle
+    BOOST_TEST(json["accessors"][1]["count"] == 3 * (2 * (rings - 1) * sides + 1));
+  }
+}
+
 BOOST_FIXTURE_TEST_CASE(a_mesh_may_be_replaced_by_its_deformation, Mesh_run)
 {
   for (const std::string name : {"a.off", "a.obj", "a.ply"}) {
@@ -194,7 +209,7 @@ BOOST_FIXTURE_TEST_CASE(formats_without_faces_leave_them_out_with_a_warning, Mes
       deform_mesh("in.off", target, more);
       BOOST_TEST(err ==
                  "deform_point_set: warning: in.off: the 349 faces of the mesh are left out; "
-                 "write PLY, OFF or OBJ to keep them\n");
+                 "write PLY, OFF, OBJ or glTF to keep them\n");
       BOOST_TEST(report["faces"] == 0);
       BOOST_TEST(report["warnings"].size() == 1);
     }

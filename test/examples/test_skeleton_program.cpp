@@ -441,7 +441,7 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_and_touches_no_file)
   refuses("--input words.xyz --swc old.swc", "words.xyz");
   refuses("--input flat.xyz --swc old.swc", "there is no tree");
   refuses("--input tree.xyz --swc old.swc --mesh no/m.ply", "there is no such folder");
-  refuses("--input tree.xyz --swc old.swc --mesh m.stl", "must be .ply or .obj");
+  refuses("--input tree.xyz --swc old.swc --mesh m.stl", "must be .ply, .obj or .glb");
   refuses("--input tree.xyz --swc old.swc --points p.e57", "p.e57");
   refuses("--input tree.xyz --swc old.swc --report folder", "is a directory");
   refuses("--input tree.xyz --swc folder", "is a directory");

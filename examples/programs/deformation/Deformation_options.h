@@ -52,8 +52,9 @@ input may also be PCD, PTX, or compressed by gzip (.gz) if built with zlib. Orde
 the points are kept, normals nx, ny, nz are rotated. PLY is written in binary, with
 coordinates in double precision.
 The faces of a mesh in PLY, OFF or OBJ are kept in these formats; PLY to PLY also keeps lists
-and other elements. Colours of faces in OFF, and normals, textures and groups in OBJ are not
-kept. With --stream, faces are held in memory.
+and other elements. The output may also be binary glTF (glb), with normals and colours only.
+Colours of faces in OFF, and normals, textures and groups in OBJ are not kept. With --stream,
+faces are held in memory.
 
 With --stream the input may be larger than memory. It is read twice (text: three times;
 LAS output: once more). At most --stream-points points, spread over the file, are kept and

@@ -45,11 +45,12 @@ adapt_faces(std::shared_ptr<pcs::IO::Mesh_faces>& faces, const std::string& outp
     warn_of_elements(*faces, run);
     faces->elements.clear();
   }
-  const bool is_mesh_format =
-      format == File_format::ply || format == File_format::off || format == File_format::obj;
+  const bool is_mesh_format = format == File_format::ply || format == File_format::off ||
+                              format == File_format::obj || format == File_format::glb;
   if (!is_mesh_format && faces->number_of_faces() > 0)
     run.warnings.push_back("the " + std::to_string(faces->number_of_faces()) +
-                           " faces of the mesh are left out; write PLY, OFF or OBJ to keep them");
+                           " faces of the mesh are left out; write PLY, OFF, OBJ or glTF to keep "
+                           "them");
   if (!is_mesh_format || faces->is_empty())
     faces = nullptr;
   run.number_of_faces = faces ? faces->number_of_faces() : 0;

@@ -7,6 +7,7 @@
 
 #include "common/Distinct_files.h"
 #include <pcs/IO/internal/extensions.h>
+#include <pcs/IO/write_mesh.h>
 #include <pcs/core/Skeleton_options.h>
 #include <pcs/core/errors.h>
 
@@ -140,8 +141,10 @@ inline void declare(CLI::App& app, Skeleton_options& options)
   app.set_version_flag("--version", PCS_PROGRAM_VERSION);
   app.add_option("--input", options.inputs, "one or more scans of trees")->required();
   app.add_option("--swc", options.swc, "the skeleton");
-  app.add_option("--mesh", options.mesh, "the closed surface, PLY or OBJ");
-  app.add_option("--leaves", options.leaves, "placeholder leaves on fine branches, PLY or OBJ");
+  app.add_option("--mesh", options.mesh, "the closed surface, PLY, OBJ or glTF (.glb)");
+  app.add_option("--leaves",
+                 options.leaves,
+                 "placeholder leaves on fine branches, PLY, OBJ or glTF (.glb)");
   app.add_option("--cylinders",
                  options.cylinders,
                  "table of cylinders, CSV; branches are numbered from 1");
@@ -288,12 +291,9 @@ inline void check_single(const Skeleton_options& options)
     check_folder_of(*path);
     files.add_output(*path);
   }
-  for (const std::string* path : {&options.mesh, &options.leaves}) {
-    const std::string extension = std::filesystem::path(*path).extension().string();
-    if (!path->empty() && extension != ".ply" && extension != ".obj" && extension != ".PLY" &&
-        extension != ".OBJ")
-      throw pcs::IO_error(*path, "the extension of a mesh must be .ply or .obj");
-  }
+  for (const std::string* path : {&options.mesh, &options.leaves})
+    if (!path->empty())
+      pcs::IO::internal::mesh_extension(*path);
 }
 
 /// Returns the name of the results of one scan of a batch: `a` for `a.ply` and `a.ply.gz`.

@@ -140,6 +140,10 @@ private:
       return internal::open_reader<File_format::ptx>(path, do_keep_faces);
     case File_format::obj:
       return internal::open_reader<File_format::obj>(path, do_keep_faces);
+    case File_format::glb:
+      throw IO_error(path,
+                     "glTF can only be written; export the mesh as PLY or OBJ, with Blender for "
+                     "example");
     case File_format::text:
     case File_format::automatic:
       break;

@@ -33,9 +33,9 @@ namespace IO {
 
   Properties are written in the order and type of the schema; coordinates are doubles unless
   `Write_options::keep_coordinate_types` is set. Faces are written if they are passed in
-  `Write_options::faces`, to PLY, OFF and OBJ. Text is read back as `float64` columns. OFF and OBJ
-  reject properties that they cannot store. LAS and LAZ round coordinates to their grid and store
-  properties that their point format lacks as extra bytes. LAZ needs LASzip (CMake option
+  `Write_options::faces`, to PLY, OFF, OBJ and glTF. Text is read back as `float64` columns. OFF,
+  OBJ and glTF reject properties that they cannot store. LAS and LAZ round coordinates to their grid
+  and store properties that their point format lacks as extra bytes. LAZ needs LASzip (CMake option
   `PCS_WITH_LASZIP`).
 
   Errors of the file system and of the format throw `pcs::IO_error`, data that do not match the
@@ -113,8 +113,9 @@ private:
                                    ? options.format
                                    : internal::format_by_extension(path);
     if (options.faces && (format == File_format::las || format == File_format::text))
-      throw IO_error(path,
-                     "this format cannot hold faces; write ply, off or obj, or the points only");
+      throw IO_error(
+          path,
+          "this format cannot hold faces; write ply, off, obj or glb, or the points only");
     switch (format) {
     case File_format::las:
       return internal::open_writer<File_format::las>(path, m_schema, options);
@@ -124,10 +125,13 @@ private:
       return internal::open_writer<File_format::text>(path, m_schema, options);
     case File_format::obj:
       return internal::open_writer<File_format::obj>(path, m_schema, options);
+    case File_format::glb:
+      return internal::open_writer<File_format::glb>(path, m_schema, options);
     case File_format::pcd:
     case File_format::ptx:
       throw IO_error(path,
-                     "this format can only be read; write ply, las, off, obj, xyz, txt or csv");
+                     "this format can only be read; write ply, las, off, obj, glb, xyz, txt or "
+                     "csv");
     case File_format::ply:
     case File_format::automatic:
       break;

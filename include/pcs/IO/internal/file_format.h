@@ -65,6 +65,8 @@ inline File_format format_of_extension(const std::string& path, const std::strin
     return File_format::ptx;
   if (extension == "obj")
     return File_format::obj;
+  if (extension == "glb")
+    return File_format::glb;
   for (const char* text : {"xyz", "txt", "csv", "asc", "pts", "pwn"})
     if (extension == text)
       return File_format::text;
@@ -78,7 +80,7 @@ inline File_format format_of_extension(const std::string& path, const std::strin
                  (extension.empty() ? std::string("a name without extension")
                                     : "unknown format '" + extension + "'") +
                      ", expected ply, las, laz, off, obj, xyz, txt, csv, asc, pts or pwn, or for "
-                     "input also pcd or ptx");
+                     "input also pcd or ptx, or for output also glb");
 }
 
 //! returns the format that the extension of a file to be written indicates; throws if it is

@@ -8,6 +8,7 @@
 #include <pcs/IO/internal/Off_reader.h>
 #include <pcs/IO/internal/Off_writer.h>
 #include <pcs/IO/internal/file_format.h>
+#include <pcs/IO/internal/gltf/Glb_writer.h>
 #include <pcs/IO/internal/las/Las_reader.h>
 #include <pcs/IO/internal/las/Las_writer.h>
 #include <pcs/IO/internal/las/Laz_reader.h>
@@ -91,6 +92,8 @@ open_writer(const std::string& path, const Point_schema& schema, const Write_opt
     return std::make_unique<Ply_writer>(path, schema, options);
   else if constexpr (format == File_format::obj)
     return std::make_unique<Obj_writer>(path, schema, options);
+  else if constexpr (format == File_format::glb)
+    return std::make_unique<Glb_writer>(path, schema, options);
   else
     return std::make_unique<Text_writer>(path, schema, options);
 }

@@ -29,7 +29,8 @@ enum class File_format : std::uint8_t {
   las,       //!< LAS 1.0 to 1.4, and LAZ where LASzip is available
   pcd,       //!< ascii, binary, binary_compressed; reading only
   ptx,       //!< one or several scans with their poses; reading only
-  obj        //!< the vertices and faces
+  obj,       //!< the vertices and faces
+  glb        //!< triangles or points as binary glTF 2.0; writing only
 };
 
 /*!

@@ -55,7 +55,8 @@ struct Write_options
   std::optional<std::array<double, 3>> las_scale;
   std::optional<std::array<double, 3>> las_offset;
 
-  //! PLY, OFF, OBJ: faces whose indices refer to the points in the order in which they are written
+  //! PLY, OFF, OBJ, glTF: faces whose indices refer to the points in the order in which they are
+  //! written
   std::shared_ptr<const Mesh_faces> faces;
 };
 
