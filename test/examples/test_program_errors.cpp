@@ -283,6 +283,7 @@ BOOST_FIXTURE_TEST_CASE(files_are_checked_before_the_work, Deform_run)
   refuses_files(in + " --output out.laz", {"out.laz", "LASzip"});
 #endif
   refuses_files(in + " --output out.ply.gz", {"out.ply.gz", "gzip FILE"});
+  refuses_files(in + " --output out.ply --report r.json.gz", {"r.json.gz", "gzip FILE"});
   refuses_files(in + " --output out", {"out: a name without extension"});
   refuses_files(in + " --output out.off", {"out.off", "OFF cannot store the property"});
   refuses_files(in + " --output out.ply --report no/report.json",

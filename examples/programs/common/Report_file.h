@@ -6,6 +6,7 @@
 #ifndef PCS_EXAMPLES_PROGRAMS_COMMON_REPORT_FILE_H
 #define PCS_EXAMPLES_PROGRAMS_COMMON_REPORT_FILE_H
 
+#include <pcs/IO/internal/extensions.h>
 #include <pcs/core/errors.h>
 
 #include <nlohmann/json.hpp>
@@ -26,6 +27,7 @@ public:
   explicit Report_file(const std::string& path) : m_path(path), m_target(path)
   {
     namespace fs = std::filesystem;
+    pcs::IO::internal::refuse_gz(path);
     std::error_code error;
     const fs::file_status status = fs::status(path, error);
     if (fs::is_directory(status))
