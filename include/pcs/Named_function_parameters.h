@@ -34,6 +34,7 @@
   PCS_OWN(do_preserve_volume)                                                                      \
   PCS_OWN(vector_map)                                                                              \
   PCS_OWN(tensor_map)                                                                              \
+  PCS_OWN(gradient_map)                                                                            \
   /* extract_tree_skeleton(): the scan, its ground and its leaves */                               \
   PCS_OWN(up_direction)                                                                            \
   PCS_OWN(root_position)                                                                           \

@@ -99,6 +99,12 @@ public:
       \np{tensor_map} tensors `T`, such as covariances of splats; they are mapped to `G T G^T`
         \nptype the same, value: `Eigen::Matrix<FT, 3, 3>`
         \npdefault none
+      \np{gradient_map} where the deformation gradient `G` of a point is written: the derivative of
+        its new position with respect to its position at rest. Points that are not written keep
+        the value that the map has.
+        \nptype model of `WritablePropertyMap`, key: element of `points`, value:
+            `Eigen::Matrix<FT, 3, 3>`
+        \npdefault none
       \np{number_of_samples} number of samples for which the non-linear problem is solved, at most
         the number of points [count]
         \nptype integer, `> 0`
@@ -329,7 +335,7 @@ public:
     O(log n) per point.
 
     \param points a model of `RandomAccessRange` at rest, modified in place
-    \param np `point_map` and `normal_map` as in the constructor, for `points`
+    \param np `point_map`, `normal_map` and `gradient_map` as in the constructor, for `points`
     \throws Invalid_input if a point or normal is not finite, or if the matrices were factorised for
             other handles since the last `deform()`; nothing is changed then
   */

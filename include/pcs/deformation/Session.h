@@ -115,9 +115,10 @@ public:
 
   /*!
     Moves any point and its normal like the points around it. The point remains bitwise unchanged if
-    its nearest point does not move. `prepare_carrying()` must be called before.
+    its nearest point does not move. `gradient`, the identity before the call, becomes the linear
+    part of the map of the point. `prepare_carrying()` must be called before.
   */
-  void carry(Vec3& point, Vec3& normal) const;
+  void carry(Vec3& point, Vec3& normal, Eigen::Matrix3d& gradient) const;
 
   /// Builds the search trees of `carry()` unless they exist. O(n log n).
   void prepare_carrying();

@@ -322,13 +322,15 @@ void carry_with_handle(const Session_state<Tag>& s,
                        Node_constraint h,
                        const Vec3& local,
                        Vec3& point,
-                       Vec3& normal)
+                       Vec3& normal,
+                       Eigen::Matrix3d& gradient)
 {
   const Similarity& t = s.local_transforms[static_cast<std::size_t>(h)];
   if (t.is_identity())
     return;
   point = s.body.frame.to_world(t(local));
   normal = t.rotation() * normal;
+  gradient = t.scale() * t.rotation();
 }
 
 /// Returns the map of a point whose nearest site is `site`, which is free or an outlier.
@@ -345,13 +347,15 @@ void carry_with_samples(const Session_state<Tag>& s,
                         std::size_t site,
                         const Vec3& local,
                         Vec3& point,
-                        Vec3& normal)
+                        Vec3& normal,
+                        Eigen::Matrix3d& gradient)
 {
   const Affine_map map = map_near_site(s, site, local);
-  Eigen::Matrix3d a = Eigen::Map<const Row_major_matrix>(map.a);
-  Vec3 moved = a * local + Eigen::Map<const Vec3>(map.t), turned = turn_normal(a, normal);
+  gradient = Eigen::Map<const Row_major_matrix>(map.a);
+  Vec3 moved = gradient * local + Eigen::Map<const Vec3>(map.t);
+  Vec3 turned = turn_normal(gradient, normal);
   if (s.body.is_sampled && s.sites[site] != outlier_site && !s.local_transforms.empty())
-    s.fades.apply(site, s.local_transforms, local, normal, moved, turned, a);
+    s.fades.apply(site, s.local_transforms, local, normal, moved, turned, gradient);
   point = s.body.frame.to_world(moved);
   normal = turned;
 }
@@ -585,16 +589,16 @@ void Session<ConcurrencyTag>::finish_writing()
 }
 
 template <class ConcurrencyTag>
-void Session<ConcurrencyTag>::carry(Vec3& point, Vec3& normal) const
+void Session<ConcurrencyTag>::carry(Vec3& point, Vec3& normal, Eigen::Matrix3d& gradient) const
 {
   const Session_state<ConcurrencyTag>& s = *m_state;
   const Vec3 local = s.body.frame.to_local(point);
   const std::size_t site = s.carrier->nearest_site(local);
   const Node_constraint h = s.sites[site];
   if (h >= 0)
-    internal::carry_with_handle(s, h, local, point, normal);
+    internal::carry_with_handle(s, h, local, point, normal, gradient);
   else if (h == free_node || h == outlier_site)
-    internal::carry_with_samples(s, site, local, point, normal);
+    internal::carry_with_samples(s, site, local, point, normal, gradient);
 }
 
 template <class ConcurrencyTag>

@@ -65,11 +65,13 @@ public:
   using Normal_map = Given_map<CGAL::internal_np::normal_t, internal::No_map>;
   using Vector_map = Given_map<pcs::internal_np::vector_map_t, internal::No_map>;
   using Tensor_map = Given_map<pcs::internal_np::tensor_map_t, internal::No_map>;
+  using Gradient_map = Given_map<pcs::internal_np::gradient_map_t, internal::No_map>;
 
   static constexpr bool has_normals = !std::is_same_v<Normal_map, internal::No_map>;
   static constexpr bool has_vectors = !std::is_same_v<Vector_map, internal::No_map>;
   static constexpr bool has_tensors = !std::is_same_v<Tensor_map, internal::No_map>;
-  static constexpr bool has_gradients = has_vectors || has_tensors;
+  static constexpr bool has_gradient_map = !std::is_same_v<Gradient_map, internal::No_map>;
+  static constexpr bool has_gradients = has_vectors || has_tensors || has_gradient_map;
 
   using Point = Map_value<Point_map>;
   using Normal = std::conditional_t<has_normals, Map_value<Normal_map>, Point>;
@@ -110,10 +112,16 @@ private:
       is_tensor_map_ok,
       "pcs::Point_set_deformation: named parameter `tensor_map` must be readable and "
       "writable, accept an element of `points` as key, and store 3 x 3 matrices of Eigen");
+  static constexpr bool is_gradient_map_ok =
+      !has_gradient_map || (is_matrix_3_v<Map_value<Gradient_map>> &&
+                            is_map_for_v<Gradient_map, Element, Map_value<Gradient_map>>);
+  static_assert(is_gradient_map_ok,
+                "pcs::Point_set_deformation: named parameter `gradient_map` must be writable, "
+                "accept an element of `points` as key, and take 3 x 3 matrices of Eigen");
 
 public:
-  static constexpr bool is_ok = is_vector_map_ok && is_tensor_map_ok && is_range_ok &&
-                                is_point_ok && is_point_map_ok && is_normal_map_ok;
+  static constexpr bool is_ok = is_vector_map_ok && is_tensor_map_ok && is_gradient_map_ok &&
+                                is_range_ok && is_point_ok && is_point_map_ok && is_normal_map_ok;
 
   /// Whether elements of the range, such as vertex descriptors, can name the points of handles.
   static constexpr bool has_keys = !std::is_same_v<Value, Point> && !std::is_integral_v<Value> &&
@@ -160,6 +168,9 @@ public:
     if constexpr (has_tensors)
       m_tensor_map = std::make_unique<Tensor_map>(
           CGAL::parameters::get_parameter(np, pcs::internal_np::tensor_map));
+    if constexpr (has_gradient_map)
+      m_gradient_map = std::make_unique<Gradient_map>(
+          CGAL::parameters::get_parameter(np, pcs::internal_np::gradient_map));
   }
 
   std::size_t size() const
@@ -244,7 +255,7 @@ public:
         result = result && attribute(*m_tensor_map, i).allFinite();
       return result;
     };
-    if constexpr (has_normals || has_gradients)
+    if constexpr (has_normals || has_vectors || has_tensors)
       for (std::size_t i = 0, n = size(); i < n; ++i)
         if (!is_finite(i))
           throw Invalid_input(std::string(function) + ": the normal, vector or tensor of point " +
@@ -274,7 +285,7 @@ public:
     });
   }
 
-  /// Writes point `i`. Its vectors and tensors at rest are mapped by the deformation gradient.
+  /// Writes point `i` and its deformation gradient, which maps its vectors and tensors at rest.
   PCS_ALWAYS_INLINE void write(std::size_t i,
                                const Vec3& p,
                                [[maybe_unused]] const Vec3& normal,
@@ -290,6 +301,10 @@ public:
         using Tensor = Map_value<Tensor_map>;
         const Eigen::Matrix3d tensor = gradient * m_rest_tensors[i] * gradient.transpose();
         put(*m_tensor_map, key, Tensor(tensor.template cast<typename Tensor::Scalar>()));
+      }
+      if constexpr (has_gradient_map) {
+        using Gradient = Map_value<Gradient_map>;
+        put(*m_gradient_map, key, Gradient(gradient.template cast<typename Gradient::Scalar>()));
       }
     });
   }
@@ -419,6 +434,7 @@ private:
   std::unique_ptr<Normal_map> m_normal_map;
   std::unique_ptr<Vector_map> m_vector_map;
   std::unique_ptr<Tensor_map> m_tensor_map;
+  std::unique_ptr<Gradient_map> m_gradient_map;
   std::vector<Vec3> m_rest_vectors;
   std::vector<Eigen::Matrix3d> m_rest_tensors;
 };

@@ -32,9 +32,13 @@ void carry_points(Session& session, Access& access, const char* function)
   const auto carry = [&](std::size_t i) {
     const Vec3 rest_normal = access.normal(i);
     Vec3 p = rest[i], normal = rest_normal;
-    session.carry(p, normal);
-    if (p != rest[i] || normal != rest_normal) // a normal may rotate at a fixed point
-      access.write(i, p, normal, Eigen::Matrix3d::Identity());
+    Eigen::Matrix3d gradient = Eigen::Matrix3d::Identity();
+    session.carry(p, normal, gradient);
+    bool is_changed = p != rest[i] || normal != rest_normal; // a normal may rotate at a fixed point
+    if constexpr (Access::has_gradient_map)
+      is_changed = is_changed || gradient != Eigen::Matrix3d::Identity();
+    if (is_changed)
+      access.write(i, p, normal, gradient);
   };
   pcs::internal::for_each_index<ConcurrencyTag>(rest.size(), carry, 256);
 }
@@ -50,7 +54,7 @@ void carry_points(Session& session,
                   const char* function)
 {
   using Access = Point_access<PointRange, NamedParameters>;
-  static_assert(!Access::has_gradients,
+  static_assert(!Access::has_vectors && !Access::has_tensors,
                 "pcs::Point_set_deformation::apply(): `vector_map` and `tensor_map` are for the "
                 "points of the object itself");
   if constexpr (Access::is_ok) {

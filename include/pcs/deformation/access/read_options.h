@@ -118,6 +118,7 @@ Sampling_options read_sampling_options(const NamedParameters& np, const std::str
                              CGAL::internal_np::number_of_iterations_t,
                              tags::vector_map_t,
                              tags::tensor_map_t,
+                             tags::gradient_map_t,
                              tags::number_of_samples_t,
                              tags::number_of_neighbors_t,
                              tags::number_of_sample_neighbors_t,
