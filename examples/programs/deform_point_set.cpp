@@ -11,6 +11,7 @@
 #include "deformation/Edit.h"
 #include "deformation/Normals.h"
 #include "deformation/Run_report.h"
+#include "deformation/Splats.h"
 #include "deformation/Streamed_deformation.h"
 #include "deformation/adapt_faces.h"
 #include "deformation/apply_edit.h"
@@ -25,6 +26,7 @@
 #include <pcs/core/Similarity.h>
 
 #include <CLI/CLI.hpp>
+#include <Eigen/Core>
 
 #include <cstddef>
 #include <cstdint>
@@ -41,6 +43,7 @@ namespace program {
 void deform_table(pcs::IO::Point_table& table,
                   const Edit& edit,
                   const Options& options,
+                  const std::optional<Splat_properties>& splats,
                   Run_report& run)
 {
   Edit_scan scan(edit, table);
@@ -61,14 +64,27 @@ void deform_table(pcs::IO::Point_table& table,
   }
   const bool do_normals = run.normals == "deformed";
 
+  std::vector<pcs::IO::Point_table::Point_3> rest;
+  if (splats)
+    rest = table.points();
+  Gradients gradients(splats ? table.number_of_points() : 0, Eigen::Matrix3d::Identity());
   Progress_line progress(!options.is_quiet);
-  run.deformation =
-      run_session({edit, motions, handles, table.points(), do_normals ? &normals : nullptr, ""},
-                  options,
-                  progress,
-                  [](const auto&) {});
+  run.deformation = run_session({edit,
+                                 motions,
+                                 handles,
+                                 table.points(),
+                                 do_normals ? &normals : nullptr,
+                                 splats ? &gradients : nullptr,
+                                 ""},
+                                options,
+                                progress,
+                                [](const auto&) {});
   if (do_normals)
     store_normals(table, normals);
+  if (splats) {
+    keep_resting_coordinates(rest, scan.largest_coordinate(), table.points());
+    transform_splats(table, *splats, gradients, run);
+  }
   check_range(edit, table, 0);
 }
 
@@ -81,17 +97,21 @@ void run_in_memory(const Options& options, std::optional<Edit> edit, Run_report&
   run.seconds_read = reading.seconds();
   run.number_of_points = table.number_of_points();
   run.warnings = table.schema().warnings;
+  const std::optional<Splat_properties> splats = find_splats(table.schema(), run.warnings);
+  if (splats)
+    note_splats(*splats, run);
   run.number_of_neighbors = options.number_of_neighbors;
   check_output(options.output, table.schema());
   adapt_faces(faces, options.output, run);
   if (!edit)
     edit = default_edit(table.points());
   run.edit = edit->source;
-  deform_table(table, *edit, options, run);
+  deform_table(table, *edit, options, splats, run);
 
   const Stopwatch writing;
   pcs::IO::Write_options write_options;
   write_options.faces = faces;
+  write_options.keep_coordinate_types = splats.has_value();
   pcs::IO::write_points(options.output, table, write_options);
   run.seconds_write = writing.seconds();
 }
@@ -117,6 +137,7 @@ void run(const Options& options)
     throw pcs::IO_error(options.input, e.what());
   }
   warn_of_unreached_points(run);
+  warn_of_invalid_splats(run);
   for (const std::string& warning : run.warnings)
     std::cerr << "deform_point_set: warning: " << options.input << ": " << warning << '\n';
   run.seconds_total = total.seconds();

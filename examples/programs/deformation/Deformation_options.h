@@ -51,6 +51,8 @@ Files: PLY, LAS (LAZ if built with LASzip), OFF, OBJ, or text (xyz, txt, csv, as
 input may also be PCD, PTX, or compressed by gzip (.gz) if built with zlib. Order and properties of
 the points are kept, normals nx, ny, nz are rotated. PLY is written in binary, with
 coordinates in double precision.
+Gaussian splats (PLY with rot_0 to rot_3, scale_0 to scale_2 and f_rest_0, ...) are recognised:
+their shapes and colours follow, and coordinates keep their type.
 The faces of a mesh in PLY, OFF or OBJ are kept in these formats; PLY to PLY also keeps lists
 and other elements. The output may also be binary glTF (glb), with normals and colours only.
 Colours of faces in OFF, and normals, textures and groups in OBJ are not kept. With --stream,

@@ -59,8 +59,11 @@ inline void store_normals(pcs::IO::Point_table& table, const Normal_vectors& nor
       using T = typename decltype(tag)::type;
       std::vector<T>& values = table.property<T>(names[axis]);
       for (std::size_t i = 0; i < values.size(); ++i)
-        if (is_finite(normals[i]))
-          values[i] = to_property<T>(normals[i][axis]);
+        if (is_finite(normals[i])) {
+          const T value = to_property<T>(normals[i][axis]);
+          if (value != values[i]) // a zero keeps its sign
+            values[i] = value;
+        }
     });
 }
 

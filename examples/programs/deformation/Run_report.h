@@ -16,6 +16,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <optional>
 #include <ostream>
 #include <string>
 #include <sys/resource.h>
@@ -55,7 +56,9 @@ struct Run_report
   std::int64_t number_of_neighbors = 0;
   std::uint64_t number_of_chunks = 0; ///< 0 unless streamed
   std::vector<std::uint64_t> points_of_handles;
-  std::string normals = "none"; ///< none, deformed, or unchanged
+  std::string normals = "none";        ///< none, deformed, or unchanged
+  std::optional<int> degree_of_splats; ///< empty: the points are no splats
+  std::uint64_t number_of_invalid_splats = 0;
   std::vector<std::string> warnings;
   double seconds_read = 0, seconds_write = 0, seconds_total = 0;
 };
@@ -101,6 +104,11 @@ inline nlohmann::ordered_json to_json(const Run_report& run, const Options& opti
   json["initial_energy"] = r.initial_energy;
   json["energy"] = r.energy;
   json["normals"] = run.normals;
+  json["splats"] = run.degree_of_splats ? "deformed" : "none";
+  if (run.degree_of_splats) {
+    json["splat_degree"] = *run.degree_of_splats;
+    json["invalid_splats"] = run.number_of_invalid_splats;
+  }
   json["seconds"] = {{"read", run.seconds_read},
                      {"neighbors", r.seconds.neighbors},
                      {"sampling", r.seconds.sampling},
@@ -129,6 +137,8 @@ inline void print_summary(std::ostream& out, const Run_report& run, const Option
         << " chunks\n";
   if (run.number_of_faces > 0)
     out << "faces       " << run.number_of_faces << '\n';
+  if (run.degree_of_splats)
+    out << "splats      of degree " << *run.degree_of_splats << ": shapes and colours follow\n";
   out << "samples     " << r.number_of_samples << '\n'
       << "iterations  " << r.number_of_iterations << '\n'
       << "status      " << r.status << '\n';

@@ -13,6 +13,7 @@
 #include "deformation/Kept_points.h"
 #include "deformation/Normals.h"
 #include "deformation/Run_report.h"
+#include "deformation/Splats.h"
 #include "deformation/adapt_faces.h"
 #include "deformation/apply_edit.h"
 #include "deformation/default_edit.h"
@@ -25,6 +26,8 @@
 #include <pcs/IO/write_points.h>
 #include <pcs/core/Similarity.h>
 #include <pcs/core/errors.h>
+
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cstddef>
@@ -59,6 +62,8 @@ public:
     m_run.edit = m_edit->source;
     m_run.seconds_read = reading.seconds();
 
+    if (m_splats)
+      m_kept_gradients.assign(m_kept.numbers.size(), Eigen::Matrix3d::Identity());
     const bool has_all = m_kept.numbers.size() == m_run.number_of_points;
     Options options = m_options;
     if (!has_all)
@@ -70,6 +75,7 @@ public:
                      m_kept.handles,
                      m_kept.table.points(),
                      do_normals() ? &m_kept.normals : nullptr,
+                     m_splats ? &m_kept_gradients : nullptr,
                      has_all ? "" : " (numbers count the points that --stream keeps)"},
                     options,
                     m_progress,
@@ -117,6 +123,9 @@ private:
       const pcs::IO::Point_reader reader(m_options.input, !m_options.is_points_only);
       m_empty = Table(reader.schema());
       m_run.warnings = reader.schema().warnings;
+      m_splats = find_splats(reader.schema(), m_run.warnings);
+      if (m_splats)
+        note_splats(*m_splats, m_run);
       n = reader.number_of_points();
     }
     m_run.number_of_points =
@@ -188,9 +197,11 @@ private:
     pcs::IO::Write_options options;
     options.number_of_points = m_run.number_of_points;
     options.faces = m_faces;
+    options.keep_coordinate_types = m_splats.has_value();
     if (pcs::IO::internal::format_by_extension(m_options.output) == pcs::IO::File_format::las)
       choose_las_grid(session, options);
     m_run.points_of_handles.assign(m_edit->handles.size(), 0);
+    m_run.number_of_invalid_splats = 0; // the grid of LAS needs a pass more
     pcs::IO::Point_writer writer(m_options.output, m_empty.schema(), options);
     check_count(for_each_chunk("writing", [&](Table& chunk, std::uint64_t first) {
       for (const std::uint32_t h : move(session, chunk, first))
@@ -232,28 +243,44 @@ private:
     Normal_vectors normals;
     if (do_normals())
       normals = chunk.normals();
+    const std::vector<Table::Point_3> rest =
+        m_splats ? chunk.points() : std::vector<Table::Point_3>();
+    Gradients gradients(m_splats ? handles.size() : 0, Eigen::Matrix3d::Identity());
     std::vector<std::size_t> others;
     for (std::size_t i = 0; i < handles.size(); ++i)
       if (m_next_kept < m_kept.numbers.size() && m_kept.numbers[m_next_kept] == first + i) {
         chunk.points()[i] = m_kept.table.points()[m_next_kept];
         if (do_normals())
           normals[i] = m_kept.normals[m_next_kept];
+        if (m_splats)
+          gradients[i] = m_kept_gradients[m_next_kept];
         ++m_next_kept;
-      } else if (handles[i] != no_handle && is_hard(m_edit->handles[handles[i]]))
-        move_rigidly(m_motions[handles[i]],
-                     chunk.points()[i],
-                     do_normals() ? &normals[i] : nullptr);
-      else
+      } else if (handles[i] != no_handle && is_hard(m_edit->handles[handles[i]])) {
+        const pcs::Similarity& motion = m_motions[handles[i]];
+        move_rigidly(motion, chunk.points()[i], do_normals() ? &normals[i] : nullptr);
+        if (m_splats)
+          gradients[i] = motion.scale() * motion.rotation();
+      } else
         others.push_back(i);
 
     const auto np = pcs::parameters::point_map(Point_map{&chunk.points()});
-    if (do_normals())
-      session.apply(others, np.normal_map(Normal_map{&normals}));
+    const auto apply = [&](const auto& np_of_points) {
+      if (do_normals())
+        session.apply(others, np_of_points.normal_map(Normal_map{&normals}));
+      else
+        session.apply(others, np_of_points);
+    };
+    if (m_splats)
+      apply(np.gradient_map(Gradient_map{&gradients}));
     else
-      session.apply(others, np);
+      apply(np);
     check_range(*m_edit, chunk, first);
     if (do_normals())
       store_normals(chunk, normals);
+    if (m_splats) {
+      keep_resting_coordinates(rest, m_scan->largest_coordinate(), chunk.points());
+      transform_splats(chunk, *m_splats, gradients, m_run);
+    }
     return handles;
   }
 
@@ -279,6 +306,8 @@ private:
   std::optional<Edit_scan> m_scan; // refers to m_edit
   std::vector<pcs::Similarity> m_motions;
   Kept_points m_kept;
+  std::optional<Splat_properties> m_splats; // empty: the points are no splats
+  Gradients m_kept_gradients;               // of the kept points if they are splats
   std::size_t m_next_kept = 0; // the first one after the points processed by the second pass
 };
 

@@ -242,6 +242,12 @@ public:
     return result;
   }
 
+  /// Returns the largest absolute value of the coordinates. [L]
+  double largest_coordinate() const
+  {
+    return m_low.cwiseAbs().cwiseMax(m_high.cwiseAbs()).maxCoeff();
+  }
+
 private:
   /// Sums relative to one of the points, which keeps the precision far from the origin.
   struct Moment

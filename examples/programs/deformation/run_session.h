@@ -17,6 +17,8 @@
 
 #include <boost/property_map/property_map.hpp>
 
+#include <Eigen/Core>
+
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
@@ -50,6 +52,7 @@ struct Index_map
 
 using Point_map = Index_map<pcs::IO::Point_table::Point_3>;
 using Normal_map = Index_map<pcs::IO::Point_table::Vector_3>;
+using Gradient_map = Index_map<Eigen::Matrix3d>;
 
 /// The points of an edit: `handles[i]` is the handle of point `i`, or `no_handle`.
 struct Edited_points
@@ -58,8 +61,9 @@ struct Edited_points
   const std::vector<pcs::Similarity>& motions;
   const std::vector<std::uint32_t>& handles;
   std::vector<pcs::IO::Point_table::Point_3>& points;
-  Normal_vectors* normals; ///< null: normals are not deformed
-  std::string note;        ///< for messages that contain the number of a point
+  Normal_vectors* normals;                 ///< null: normals are not deformed
+  std::vector<Eigen::Matrix3d>* gradients; ///< null: not needed; otherwise of the rest shape
+  std::string note;                        ///< for messages that contain the number of a point
 };
 
 inline bool is_hard(const Handle& handle)
@@ -124,8 +128,14 @@ pcs::Deformation_report run_session(const Edited_points& cloud,
                       .number_of_samples(options.number_of_samples)
                       .number_of_neighbors(options.number_of_neighbors)
                       .callback(show);
-  return cloud.normals != nullptr ? run(np.normal_map(Normal_map{cloud.normals, &is_fixed}))
-                                  : run(np);
+  const auto run_with_normals = [&](const auto& np_of_points) {
+    return cloud.normals != nullptr
+               ? run(np_of_points.normal_map(Normal_map{cloud.normals, &is_fixed}))
+               : run(np_of_points);
+  };
+  return cloud.gradients != nullptr
+             ? run_with_normals(np.gradient_map(Gradient_map{cloud.gradients, &is_fixed}))
+             : run_with_normals(np);
 }
 
 /// Throws if a coordinate is not finite. Points are numbered from `first` on.
