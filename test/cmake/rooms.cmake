@@ -53,6 +53,7 @@ set(skeleton_session
   axes/fit_axes.h
   axes/reassign_points.h
   branching/build_branch_tree.h
+  branching/level_set_skeleton.h
   clutter/remove_clutter.h
   continuation/follow_thick_ends.h
   input/Session_hints.h

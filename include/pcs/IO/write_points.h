@@ -27,9 +27,9 @@ namespace IO {
   The conditions are those of `Point_writer`. The file is written completely or not at all, so the
   table may be written to the file from which it was read.
 
-  In LAS and LAZ files, points from a LAS file keep their scale and offset. If their coordinates cannot be
-  represented with this offset, it is replaced. For other points, the scale is the smallest power of
-  ten for which the longest side of the bounding box has at most 5e8 steps.
+  In LAS and LAZ files, points from a LAS file keep their scale and offset. If their coordinates
+  cannot be represented with this offset, it is replaced. For other points, the scale is the
+  smallest power of ten for which the longest side of the bounding box has at most 5e8 steps.
 
   \param path name of the file; its extension determines the format unless `options.format` is set
   \param table the points
