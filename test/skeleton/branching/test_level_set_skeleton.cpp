@@ -186,6 +186,28 @@ BOOST_AUTO_TEST_CASE(a_single_component_gives_no_tree)
   BOOST_TEST(sk::level_set_skeleton(scan, layers, {}).nodes.empty());
 }
 
+BOOST_AUTO_TEST_CASE(the_skeleton_begins_with_the_longest_path_from_the_root)
+{
+  sk::Scan scan;
+  sk::Layer_tree layers;
+  scan.spacing = 1;
+  for (sk::Index i = 0; i < 5; ++i) {
+    scan.points.emplace_back(i == 0 ? 10 : 0, 0, i); // the first component is a stray point
+    layers.node_of_point.push_back(i);
+    layers.parent.push_back(i < 2 ? sk::none : i - 1);
+    layers.center.push_back(scan.points.back());
+    layers.spread.push_back(0);
+    layers.first.push_back(i);
+    layers.point.push_back(i);
+  }
+  layers.first.push_back(5);
+  const sk::Branch_tree tree = sk::level_set_skeleton(scan, layers, {0, 1});
+  BOOST_TEST_REQUIRE(tree.nodes.size() == 4u);
+  BOOST_TEST((tree.nodes.front().point == scan.points[1]));
+  BOOST_TEST((tree.nodes.back().point == scan.points[4]));
+  BOOST_TEST(tree.node_of_point[0] == sk::none);
+}
+
 BOOST_AUTO_TEST_SUITE_END()
 
 } // namespace test_level_set_skeleton

@@ -48,10 +48,19 @@ public:
   {
   }
 
-  /// Returns the tree that begins with component `start`.
-  Branch_tree operator()(Index start)
+  /// Returns the tree that begins with the component of a point of `root` from which the longest
+  /// path begins.
+  Branch_tree operator()(const std::vector<Index>& root)
   {
-    link(start);
+    link();
+    Index start = none;
+    for (const Index i : root) {
+      const Index v = m_layers.node_of_point[i];
+      if (v != none && (start == none || m_reach[v] > m_reach[start]))
+        start = v;
+    }
+    if (start == none)
+      return Branch_tree();
     select(start);
     if (m_selected.size() < 2) // no edge
       return Branch_tree();
@@ -75,12 +84,12 @@ private:
   }
 
   /// Finds the children of each component, and the length of the longest path to a tip.
-  void link(Index start)
+  void link()
   {
     const std::size_t n = m_layers.size();
     m_children.assign(n, {});
     m_reach.assign(n, 0);
-    for (Index v = static_cast<Index>(n); v-- > start + 1;) { // parents have smaller indices
+    for (Index v = static_cast<Index>(n); v-- > 0;) { // parents have smaller indices
       const Index p = m_layers.parent[v];
       if (p == none)
         continue;
@@ -198,13 +207,13 @@ private:
 
 /*!
   Returns the skeleton through the centers of the level-set components of `layers`. It begins with
-  the component of the first point of `root`, and is empty if there is no edge. O(n log n).
+  the component at the points `root` that has the longest path to a tip, and is empty if there is no
+  edge. O(n log n).
 */
 inline Branch_tree
 level_set_skeleton(const Scan& scan, const Layer_tree& layers, const std::vector<Index>& root)
 {
-  const Index start = root.empty() ? none : layers.node_of_point[root.front()];
-  return start == none ? Branch_tree() : internal::Level_set_tree_builder(scan, layers)(start);
+  return internal::Level_set_tree_builder(scan, layers)(root);
 }
 
 } // namespace skeleton
