@@ -270,8 +270,6 @@ BOOST_AUTO_TEST_CASE(a_snapshot_holds_what_was_solved)
     const auto of_two = s.session.snapshot();
     const auto middle = s.session.add_handle(middle_of(s.edit.points));
     BOOST_CHECK_EXCEPTION(s.session.snapshot(), Invalid_input, message_has("call it first"));
-    BOOST_CHECK_EXCEPTION(s.session.restore(of_two), Invalid_input, message_has("other handles"));
-    BOOST_TEST((s.points == bent));
     s.session.deform();
     const Points held = s.points;
     const auto of_three = s.session.snapshot();
@@ -279,13 +277,16 @@ BOOST_AUTO_TEST_CASE(a_snapshot_holds_what_was_solved)
     s.session.restore(of_three);
     BOOST_TEST((s.points == held));
     s.session.remove_handle(middle);
-    BOOST_CHECK_THROW(s.session.restore(of_three), Invalid_input);
     s.session.deform();
     BOOST_TEST(pcs_test::largest_distance(s.points, bent) < 1e-9);
+    s.session.restore(of_three);
+    BOOST_TEST((s.points == held));
+    s.session.restore(of_two);
+    BOOST_TEST((s.points == bent));
 
     const auto of_old_rest = s.session.snapshot();
     s.session.accept();
-    BOOST_CHECK_EXCEPTION(s.session.restore(of_old_rest), Invalid_input, message_has("rest shape"));
+    BOOST_CHECK_EXCEPTION(s.session.restore(of_old_rest), Invalid_input, message_has("accept()"));
     BOOST_TEST(pcs_test::largest_distance(s.points, bent) < 1e-9);
   }
 }

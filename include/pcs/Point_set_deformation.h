@@ -185,7 +185,8 @@ public:
   Point_set_deformation& operator=(Point_set_deformation&&) = default;
 
   /// \name Handles
-  /// Handles are numbered from 0 in the order in which they were added; numbers are not reused.
+  /// Handles are numbered from 0 in the order in which they were added; numbers are not reused, and
+  /// `restore()` brings back the handles of a snapshot with their numbers.
   /// @{
 
   /*!
@@ -206,7 +207,7 @@ public:
     deformation::check_softness(softness, function);
     const auto checked = m_access.positions_of(indices, m_session->number_of_points(), function);
     const Handle handle = m_session->add_handle(checked, softness > 0 ? 1 / softness : 0, function);
-    m_motion.emplace_back();
+    m_motion.resize(handle + 1);
     return handle;
   }
 
@@ -347,7 +348,8 @@ public:
     deformation::carry_points<ConcurrencyTag>(*m_session, points, np, function);
   }
 
-  /// Returns the current shape and its motions; only data of the samples are stored.
+  /// Returns the current shape, its handles and their motions. The snapshot stores data of the
+  /// samples, and shares the lists of the points of handles with this object.
   /// \throws Invalid_input if handles were added or removed since the last `deform()`
   Snapshot snapshot() const
   {
@@ -362,25 +364,35 @@ public:
     return result;
   }
 
-  /// Restores the points and motions of a snapshot. \throws Invalid_input unless it was taken from
-  /// this object with the same handles and the same rest shape; nothing is changed then
+  /*!
+    Restores the points, handles and motions of a snapshot. All points have the bits that they had
+    when it was taken, and the next cold `deform()` has the same result as it had then. Handles that
+    were removed since then exist again, with their numbers, and those that were added since then do
+    not. Their numbers are given to no other handle, and become valid again if a later snapshot with
+    these handles is restored.
+
+    If the handles differ from those of the last factorisation, the matrices are factorised again,
+    as by `preprocess()`; otherwise the cost is that of writing the points.
+    \throws Invalid_input unless the snapshot was taken from this object with the same rest shape;
+            nothing is changed then
+  */
   void restore(const Snapshot& snapshot)
   {
     const char* function = "pcs::Point_set_deformation::restore()";
     check_points(function);
-    internal::check(m_session->is_of_setting(snapshot.session),
+    internal::check(m_session->is_of_rest_shape(snapshot.session),
                     function,
-                    "the snapshot is of another point set, of another rest shape, or of other "
-                    "handles");
+                    "the snapshot is of another object, or was taken before accept() of this one; "
+                    "restore a snapshot that was taken from this object after accept()");
     m_session->restore(snapshot.session);
-    const std::size_t count = m_motion.size();
     m_motion = snapshot.motions;
-    m_motion.resize(count); // handles that were added after the snapshot are at rest
+    m_motion.resize(m_session->number_of_handles()); // those added in the rest shape are at rest
     m_shape_motions = m_motion;
     write_points();
   }
 
-  /// Restores the rest shape; handles remain, and their motions are reset.
+  /// Restores the rest shape, with all bits of its positions; handles remain, and their motions are
+  /// reset.
   void reset()
   {
     check_points("pcs::Point_set_deformation::reset()");

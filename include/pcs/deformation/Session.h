@@ -24,12 +24,17 @@
 namespace pcs {
 namespace deformation {
 
+struct Handle_points;
+
 /// State of the samples and handles, from which the positions of all points can be restored.
 struct Session_snapshot
 {
-  std::vector<Similarity> transforms; ///< of the handles
-  std::vector<Affine_map> maps;       ///< of the samples
-  std::uint64_t setting = 0;          ///< identifies session, rest shape and handles
+  std::vector<Similarity> transforms;                        ///< of the handles
+  std::vector<std::shared_ptr<const Handle_points>> handles; ///< shared with the session
+  std::vector<Vec3> centroids;                               ///< of the handles
+  std::vector<Affine_map> maps;                              ///< of the samples
+  std::uint64_t rest_setting = 0;                            ///< identifies session and rest shape
+  std::uint64_t setting = 0;                                 ///< and the handles as well
   bool is_at_rest = true;
 };
 
@@ -68,6 +73,8 @@ public:
   void remove_handle(std::size_t handle);
 
   bool is_handle(std::size_t handle) const;
+  /// Returns the smallest number that is larger than those of all handles.
+  std::size_t number_of_handles() const;
 
   /// Centroid of the handle's points at rest, in the caller's coordinates.
   const Vec3& centroid(std::size_t handle) const;
@@ -88,12 +95,14 @@ public:
   bool has_shape_of_handles() const;
   /// Whether the handles of the factorised matrices differ from those of the current shape.
   bool is_ahead_of_shape() const;
-  /// Whether a snapshot was taken from this session with its current rest shape and handles.
-  bool is_of_setting(const Session_snapshot& s) const;
+  /// Whether a snapshot was taken from this session with its current rest shape.
+  bool is_of_rest_shape(const Session_snapshot& s) const;
 
   /// Returns the last shape that was solved or restored, with its motions.
   Session_snapshot snapshot() const;
 
+  /// Restores shape, handles and motions. Factorises if the handles differ from those of the last
+  /// factorisation.
   void restore(const Session_snapshot& s);
 
   /// Restores the rest shape and sets all handles to rest.

@@ -20,6 +20,7 @@
 #include <pcs/deformation/upsampling/Handle_fades.h>
 #include <pcs/deformation/upsampling/Outlier_maps.h>
 #include <pcs/deformation/upsampling/Point_carrier.h>
+#include <pcs/deformation/upsampling/Rest_positions.h>
 #include <pcs/deformation/upsampling/Upsampling.h>
 #include <pcs/deformation/upsampling/read_maps.h>
 #include <pcs/internal/Stage_timer.h>
@@ -41,7 +42,8 @@ namespace deformation {
 
 /*!
   The data of a session. A *setting* is a number that identifies the session, its handles and its
-  rest shape; it changes whenever handles or the rest shape change.
+  rest shape; it changes whenever handles or the rest shape change. A snapshot brings back the
+  setting of its handles.
 */
 template <class ConcurrencyTag>
 struct Session_state
@@ -55,7 +57,8 @@ struct Session_state
 
   // ---- the handles as the caller set them; no other call changes them
   Handle_set handles;
-  std::uint64_t setting = 0; ///< of the current handles and rest shape
+  std::uint64_t setting = 0;      ///< of the current handles and rest shape
+  std::uint64_t rest_setting = 0; ///< the first setting of the rest shape
 
   // ---- constraints of these handles; a cancelled solve does not change them
   Site_constraints sites;
@@ -64,7 +67,7 @@ struct Session_state
   Elastic_solver<ConcurrencyTag> solver;
   Handle_fades fades;
   double stiffness = 1;
-  bool is_constrained = false;        ///< by the current handles
+  bool is_constrained = false;        ///< whether the matrices of this setting are factorised
   std::uint64_t setting_of_sites = 0; ///< setting for which `sites` were found
 
   // ---- the state of the solver; a cancelled solve invalidates it, and the next solve starts cold
@@ -84,6 +87,7 @@ struct Session_state
   std::vector<int> are_finite;
 
   // ---- output, computed from the current shape
+  Rest_positions rest_positions;
   Dirty_handles dirty_handles; ///< handles with points displaced by earlier writes
   Outlier_maps outlier_maps;
   std::vector<Handle_map> handle_maps;
@@ -106,8 +110,7 @@ void keep_rest(Session_state<Tag>& s)
   s.is_at_rest = true;
 }
 
-/// Begins a new setting after handles or the rest shape changed. Earlier snapshots cannot be
-/// restored.
+/// Begins a new setting after handles or the rest shape changed.
 template <class Tag>
 void begin_setting(Session_state<Tag>& s)
 {
@@ -115,6 +118,14 @@ void begin_setting(Session_state<Tag>& s)
   s.setting = ++last;
   if (s.is_at_rest)
     keep_rest(s);
+}
+
+/// Begins the first setting of a rest shape. Earlier snapshots cannot be restored.
+template <class Tag>
+void begin_rest_shape(Session_state<Tag>& s)
+{
+  begin_setting(s);
+  s.rest_setting = s.setting;
 }
 
 template <class Tag>
@@ -384,6 +395,10 @@ void move_rest(Session_state<Tag>& s, const std::function<Vec3(std::size_t)>& po
   Sampled_body<Tag>& body = s.body;
   body.rest_points.set_positions(
       [&](std::size_t place) { return body.frame.to_local(position(body.input_of_place[place])); });
+  std::vector<Vec3> points(body.number_of_points());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    points[i] = position(i);
+  s.rest_positions.keep(body.frame, std::move(points));
   for (std::size_t sample = 0; sample < body.network.size(); ++sample)
     body.network.rest[sample] = body.rest_of_site(body.site_of_sample[sample]);
   s.coarse.accept(body.network);
@@ -400,16 +415,18 @@ Session<ConcurrencyTag>::Session(std::vector<Vec3> points,
   : m_state(std::make_unique<Session_state<ConcurrencyTag>>())
 {
   Session_state<ConcurrencyTag>& s = *m_state;
+  std::vector<Vec3> rest = points;
   s.is_ready = s.body.build(std::move(points), options, s.report.seconds, progress);
   if (!s.is_ready) {
     s.report.status = Status::cancelled;
     return;
   }
+  s.rest_positions.keep(s.body.frame, std::move(rest));
   internal::describe_body(s);
   internal::prepare_points(s);
   internal::prepare_samples(s);
   s.handles.start(s.body, region);
-  internal::begin_setting(s);
+  internal::begin_rest_shape(s);
 }
 
 template <class ConcurrencyTag>
@@ -439,7 +456,6 @@ std::size_t Session<ConcurrencyTag>::add_handle(const std::vector<std::uint32_t>
                                                 const char* function)
 {
   const std::size_t handle = m_state->handles.add(m_state->body, indices, weight, function);
-  m_state->is_constrained = false;
   internal::begin_setting(*m_state);
   return handle;
 }
@@ -448,7 +464,6 @@ template <class ConcurrencyTag>
 void Session<ConcurrencyTag>::remove_handle(std::size_t handle)
 {
   m_state->handles.remove(handle);
-  m_state->is_constrained = false;
   internal::begin_setting(*m_state);
 }
 
@@ -456,6 +471,12 @@ template <class ConcurrencyTag>
 bool Session<ConcurrencyTag>::is_handle(std::size_t handle) const
 {
   return m_state->handles.contains(handle);
+}
+
+template <class ConcurrencyTag>
+std::size_t Session<ConcurrencyTag>::number_of_handles() const
+{
+  return m_state->handles.size();
 }
 
 template <class ConcurrencyTag>
@@ -480,11 +501,11 @@ template <class ConcurrencyTag>
 bool Session<ConcurrencyTag>::constrain(double stiffness)
 {
   Session_state<ConcurrencyTag>& s = *m_state;
-  if (s.is_constrained && stiffness == s.stiffness)
+  if (s.is_constrained && s.setting_of_sites == s.setting && stiffness == s.stiffness)
     return true;
   s.report.seconds.factorization = 0;
   const pcs::internal::Stage_timer timer(s.report.seconds.factorization);
-  s.has_solution = false;
+  s.has_solution = s.is_constrained = false;
   s.stiffness = stiffness;
   s.setting_of_sites = s.setting;
   Body_constraints found = constrain_body(s.body, s.border_finder, s.handles, s.sites, s.report);
@@ -525,23 +546,32 @@ bool Session<ConcurrencyTag>::is_ahead_of_shape() const
 }
 
 template <class ConcurrencyTag>
-bool Session<ConcurrencyTag>::is_of_setting(const Session_snapshot& s) const
+bool Session<ConcurrencyTag>::is_of_rest_shape(const Session_snapshot& s) const
 {
-  return s.setting == m_state->setting;
+  return s.rest_setting == m_state->rest_setting;
 }
 
 template <class ConcurrencyTag>
 Session_snapshot Session<ConcurrencyTag>::snapshot() const
 {
   const Session_state<ConcurrencyTag>& s = *m_state;
-  return {s.shape_transforms, s.maps, s.setting, s.is_at_rest};
+  return {s.shape_transforms,
+          s.handles.points(),
+          s.handles.centroids(),
+          s.maps,
+          s.rest_setting,
+          s.setting,
+          s.is_at_rest};
 }
 
 template <class ConcurrencyTag>
 void Session<ConcurrencyTag>::restore(const Session_snapshot& snapshot)
 {
   Session_state<ConcurrencyTag>& s = *m_state;
-  s.handles.restore(snapshot.transforms);
+  s.handles.restore(snapshot.handles, snapshot.centroids, snapshot.transforms);
+  if (s.setting != snapshot.setting)
+    s.dirty_handles.replace_handles();
+  s.setting = snapshot.setting;
   s.maps = snapshot.maps;
   s.shape_transforms = s.handles.transforms();
   s.setting_of_shape = s.setting;
@@ -578,6 +608,8 @@ Moved_points<ConcurrencyTag> Session<ConcurrencyTag>::moved_points()
           s.sites,
           s.local_transforms,
           is_written,
+          s.rest_positions,
+          s.is_at_rest,
           motions,
           seconds};
 }
@@ -635,9 +667,8 @@ void Session<ConcurrencyTag>::accept(const std::function<Vec3(std::size_t)>& pos
   internal::move_rest(s, position);
   s.sites.accept();
   s.dirty_handles.accept();
-  s.is_constrained = false;
   s.handles.put_at_rest();
-  internal::begin_setting(s);
+  internal::begin_rest_shape(s);
   internal::put_samples_at_rest(s);
   s.handles.update_centroids(s.body);
   internal::localize_transforms(s);

@@ -18,7 +18,9 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace pcs {
@@ -27,8 +29,16 @@ namespace deformation {
 /// A site that is not in the region of interest.
 constexpr Node_constraint outside_region = -3;
 
+/// The points of a handle and their softness. Sets of handles and snapshots share these objects.
+struct Handle_points
+{
+  std::vector<std::uint32_t> sites;      ///< each once
+  std::vector<std::uint32_t> components; ///< of the sites, increasing
+  double weight = 0;                     ///< 0: exact; positive: soft, see `Node_constraints`
+};
+
 /// The handles of a session: points, softness and motion. Transformations are in the caller's
-/// coordinates; the number of a removed handle is not reused.
+/// coordinates. A number is given to one handle only, even if `restore()` removes this handle.
 class Handle_set
 {
 public:
@@ -49,10 +59,14 @@ public:
         m_handle_of_site[body.site_of_input[i]] = outside_region;
   }
 
-  /// Returns the number of handles, including removed ones.
+  /// Returns the number of handles, including removed ones that are not behind the last handle of
+  /// the last `restore()`.
   std::size_t size() const { return m_transforms.size(); }
-  bool contains(std::size_t handle) const { return handle < m_is_used.size() && m_is_used[handle]; }
-  bool empty() const { return std::find(m_is_used.begin(), m_is_used.end(), 1) == m_is_used.end(); }
+  bool contains(std::size_t handle) const { return handle < size() && m_points[handle]; }
+  bool empty() const
+  {
+    return std::find_if(m_points.begin(), m_points.end(), is_used) == m_points.end();
+  }
 
   /// Whether there are points outside the region of interest. An additional last handle holds them.
   bool has_outside() const { return m_has_outside; }
@@ -61,6 +75,9 @@ public:
   const std::vector<Similarity>& transforms() const { return m_transforms; }
   /// Returns the centroid of the handle's points at rest.
   const Vec3& centroid(std::size_t handle) const { return m_centroid[handle]; }
+  const std::vector<Vec3>& centroids() const { return m_centroid; }
+  /// Returns the points of each handle, null for removed ones.
+  const std::vector<std::shared_ptr<const Handle_points>>& points() const { return m_points; }
 
   /// Returns the handle of a site as set by the caller, `free_node` or `outside_region`.
   Node_constraint of_site(std::size_t site) const { return m_handle_of_site[site]; }
@@ -79,10 +96,8 @@ public:
   }
   bool has_soft_handles() const
   {
-    for (std::size_t h = 0; h < size(); ++h)
-      if (m_is_used[h] && m_weight[h] > 0)
-        return true;
-    return false;
+    return std::find_if(m_weight.begin(), m_weight.end(), [](double w) { return w > 0; }) !=
+           m_weight.end();
   }
 
   /// Returns the softness weights of all handles, including the outside of the region.
@@ -98,9 +113,9 @@ public:
   std::vector<char> reached_components(std::size_t number_of_components) const
   {
     std::vector<char> is_reached(number_of_components, 0);
-    for (std::size_t h = 0; h < size(); ++h)
-      if (m_is_used[h])
-        for (const auto component : m_components_of_handle[h])
+    for (const auto& points : m_points)
+      if (points)
+        for (const auto component : points->components)
           is_reached[component] = 1;
     return is_reached;
   }
@@ -121,15 +136,15 @@ public:
         throw Invalid_input(std::string(function) + ": point " + std::to_string(i) +
                             " of the handle (or another one at the same place) is outside the "
                             "region of interest");
-      if (h >= 0 && m_is_used[static_cast<std::size_t>(h)])
+      if (h >= 0)
         throw Invalid_input(std::string(function) + ": point " + std::to_string(i) +
                             " (or another one at the same place) belongs to handle " +
                             std::to_string(h) + " already; a point has one target");
     }
-    const std::size_t handle = size();
+    const std::size_t handle = m_next;
+    auto points = std::make_shared<Handle_points>();
     std::vector<char> is_reached(body.number_of_components(), 0);
     Vec3 sum = Vec3::Zero(); // of the sites, each counted once
-    std::size_t number = 0;
     for (const auto i : indices) {
       const std::size_t site = body.site_of_input[i];
       if (m_handle_of_site[site] == static_cast<Node_constraint>(handle))
@@ -137,26 +152,25 @@ public:
       m_handle_of_site[site] = static_cast<Node_constraint>(handle);
       is_reached[body.component_of_site[site]] = 1;
       sum += body.rest_of_site(site);
-      ++number;
+      points->sites.push_back(static_cast<std::uint32_t>(site));
     }
-    m_transforms.emplace_back();
-    m_weight.push_back(weight);
-    m_is_used.push_back(1);
-    m_components_of_handle.emplace_back();
     for (std::size_t c = 0; c < is_reached.size(); ++c)
       if (is_reached[c])
-        m_components_of_handle.back().push_back(static_cast<std::uint32_t>(c));
-    m_centroid.push_back(body.frame.to_world(sum / static_cast<double>(number)));
-    return handle;
+        points->components.push_back(static_cast<std::uint32_t>(c));
+    points->weight = weight;
+    resize(handle + 1); // numbers of handles that `restore()` removed count as removed handles
+    m_weight[handle] = weight;
+    m_centroid[handle] = body.frame.to_world(sum / static_cast<double>(points->sites.size()));
+    m_points[handle] = std::move(points);
+    return m_next++;
   }
 
   /// Frees the points of a handle.
   void remove(std::size_t handle)
   {
-    for (auto& h : m_handle_of_site)
-      if (h == static_cast<Node_constraint>(handle))
-        h = free_node;
-    m_is_used[handle] = 0;
+    hold_sites(*m_points[handle], free_node);
+    m_points[handle].reset();
+    m_weight[handle] = 0;
     m_transforms[handle] = Similarity();
   }
 
@@ -174,11 +188,30 @@ public:
     m_transforms[handle] = transform;
   }
 
-  /// Restores earlier transformations; handles that were added afterwards are at rest.
-  void restore(const std::vector<Similarity>& transforms)
+  /// Restores earlier handles, with the results of `points()`, `centroids()` and `transforms()`.
+  /// Only the points of handles that were added or removed since then are visited.
+  void restore(std::vector<std::shared_ptr<const Handle_points>> points,
+               std::vector<Vec3> centroids,
+               std::vector<Similarity> transforms)
   {
-    m_transforms = transforms;
-    m_transforms.resize(m_is_used.size());
+    std::vector<double> weights;
+    for (const auto& p : points)
+      weights.push_back(p ? p->weight : 0);
+    const auto visit_different = [&](const auto& from, const auto& to, const auto& visit) {
+      for (std::size_t h = 0; h < from.size(); ++h)
+        if (from[h] && (h >= to.size() || to[h] != from[h]))
+          visit(*from[h], static_cast<Node_constraint>(h));
+    };
+    visit_different(m_points, points, [&](const Handle_points& p, Node_constraint) {
+      hold_sites(p, free_node);
+    });
+    visit_different(points, m_points, [&](const Handle_points& p, Node_constraint h) {
+      hold_sites(p, h);
+    });
+    m_points = std::move(points);
+    m_centroid = std::move(centroids);
+    m_transforms = std::move(transforms);
+    m_weight = std::move(weights);
   }
 
   void put_at_rest() { m_transforms.assign(size(), Similarity()); }
@@ -222,14 +255,33 @@ private:
   /// Scale and distance [extents] beyond which double precision cannot represent the shape.
   static constexpr double largest_motion = 1e12;
 
+  static bool is_used(const std::shared_ptr<const Handle_points>& points)
+  {
+    return points != nullptr;
+  }
+
+  void hold_sites(const Handle_points& points, Node_constraint handle)
+  {
+    for (const auto site : points.sites)
+      m_handle_of_site[site] = handle;
+  }
+
+  void resize(std::size_t count)
+  {
+    m_transforms.resize(count);
+    m_weight.resize(count, 0);
+    m_centroid.resize(count, Vec3::Zero());
+    m_points.resize(count);
+  }
+
   std::vector<Node_constraint> m_handle_of_site;
   bool m_has_outside = false;
+  std::size_t m_next = 0; ///< number of the next handle; larger than all that were given before
   // one for each handle
   std::vector<Similarity> m_transforms;
   std::vector<double> m_weight; ///< 0: exact
-  std::vector<char> m_is_used;
-  std::vector<std::vector<std::uint32_t>> m_components_of_handle;
   std::vector<Vec3> m_centroid;
+  std::vector<std::shared_ptr<const Handle_points>> m_points; ///< null for a removed handle
 };
 
 } // namespace deformation

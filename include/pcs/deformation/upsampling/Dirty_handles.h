@@ -14,12 +14,16 @@
 namespace pcs {
 namespace deformation {
 
+/// Values of `Dirty_handles::find()` for a handle: its points are not written, written at their
+/// positions at rest, or moved.
+constexpr char points_unwritten = 0, points_at_rest = 1, points_moved = 2;
+
 /// The handles with displaced points.
 class Dirty_handles
 {
 public:
   /*!
-    Finds for each handle whether its points are written: whether it moves or has moved before.
+    Finds for each handle how its points are written: they are if it moves or has moved before.
     Until `finish()`, all of these handles count as moved, since an output that throws leaves some
     of their points displaced. Allocates nothing if the number of handles is unchanged.
 
@@ -41,8 +45,13 @@ public:
       if (static_cast<std::size_t>(h) < count && m_is_displaced)
         m_was_moved[static_cast<std::size_t>(h)] = 1;
     m_is_written.assign(transforms.size(), 0);
-    for (std::size_t h = 0; h < count; ++h)
-      m_is_written[h] = m_was_moved[h] = m_was_moved[h] || !transforms[h].is_identity() ? 1 : 0;
+    for (std::size_t h = 0; h < count; ++h) {
+      const bool is_moved = !transforms[h].is_identity();
+      m_is_written[h] = is_moved         ? points_moved
+                        : m_was_moved[h] ? points_at_rest
+                                         : points_unwritten;
+      m_was_moved[h] = m_was_moved[h] || is_moved ? 1 : 0;
+    }
     m_is_displaced = m_is_displaced || !is_at_rest;
     return m_is_written;
   }
@@ -53,6 +62,9 @@ public:
     for (std::size_t h = 0; h < m_was_moved.size(); ++h)
       m_was_moved[h] = transforms[h].is_identity() ? 0 : 1;
   }
+
+  /// Marks all handles as moved, because their points may have been displaced by other handles.
+  void replace_handles() { m_was_moved.clear(); }
 
   /// Makes the current shape the rest shape.
   void accept()

@@ -9,7 +9,9 @@
 #include <pcs/deformation/body/Sampled_body.h>
 #include <pcs/deformation/handles/Site_constraints.h>
 #include <pcs/deformation/model/Affine_map.h>
+#include <pcs/deformation/upsampling/Dirty_handles.h>
 #include <pcs/deformation/upsampling/Outlier_maps.h>
+#include <pcs/deformation/upsampling/Rest_positions.h>
 #include <pcs/deformation/upsampling/Upsampling.h>
 #include <pcs/internal/instruction_set.h>
 
@@ -31,7 +33,9 @@ struct Moved_points
   const Outlier_maps& outlier_maps;
   const Site_constraints& sites;
   const std::vector<Similarity>& transforms; ///< of the handles, in local coordinates
-  const std::vector<char>& is_written;       ///< of each handle: whether its points are written
+  const std::vector<char>& is_written;       ///< of each handle, from `Dirty_handles::find()`
+  const Rest_positions& rest_positions;      ///< in the caller's coordinates
+  bool is_at_rest;                           ///< whether all maps and transforms are identities
   Upsampling::Block_motions motions;         ///< if the body is sampled
   double& seconds;                           ///< time of writing in the report [s]
 };
@@ -50,6 +54,7 @@ public:
     : m_body(moved.body),
       m_sites(moved.sites),
       m_outlier_maps(moved.outlier_maps),
+      m_rest_positions(moved.rest_positions),
       m_transforms(moved.transforms),
       m_is_written(moved.is_written),
       m_output(output),
@@ -81,12 +86,28 @@ public:
   {
     const std::size_t site = m_body.site_of_place[place];
     const Node_constraint h = m_sites[site];
-    if (h >= 0 && m_is_written[static_cast<std::size_t>(h)])
+    if (h >= 0 && m_is_written[static_cast<std::size_t>(h)] == points_moved)
       write_rigid(place, m_transforms[static_cast<std::size_t>(h)]);
     else if (h == outlier_site)
       write_mapped(place, m_outlier_maps.of_site(m_body, site));
-    else if (h == returning_site)
-      write_mapped(place, identity_map());
+    else
+      write_unmoved(place);
+  }
+
+  /// Writes the position at rest, with all its bits, unless the point has never left it.
+  void write_unmoved(std::size_t place) const
+  {
+    const Node_constraint h = m_sites[m_body.site_of_place[place]];
+    if (h == unreached_node ||
+        (h >= 0 && m_is_written[static_cast<std::size_t>(h)] == points_unwritten))
+      return;
+    Vec3 normal = Vec3::Zero();
+    if (m_body.rest_points.has_normals())
+      normal = m_body.rest_points.normal(place);
+    const Vec3 position = m_rest_positions(m_body.input_of_place[place], [&] {
+      return m_body.frame.to_world(m_body.rest_points.position(place));
+    });
+    write(place, position, normal, Eigen::Matrix3d::Identity());
   }
 
   void write_mapped(std::size_t place, const Affine_map& map) const
@@ -121,6 +142,7 @@ private:
   const Sampled_body<ConcurrencyTag>& m_body;
   const Site_constraints& m_sites;
   const Outlier_maps& m_outlier_maps;
+  const Rest_positions& m_rest_positions;
   const std::vector<Similarity>& m_transforms;
   const std::vector<char>& m_is_written;
   Output& m_output;

@@ -9,6 +9,7 @@
 #include <pcs/deformation/model/Affine_map.h>
 #include <pcs/deformation/model/Local_frame.h>
 #include <pcs/deformation/model/Point_blocks.h>
+#include <pcs/deformation/upsampling/Dirty_handles.h>
 #include <pcs/deformation/upsampling/blend_block.h>
 #include <pcs/internal/Huge_page_allocator.h>
 #include <pcs/internal/instruction_set.h>
@@ -78,8 +79,7 @@ public:
   {
     const std::uint8_t* is_blended = nullptr;
     const std::int32_t* holder = nullptr;
-    const char* is_written =
-        nullptr; ///< for each handle: whether the points of its blocks are written
+    const char* is_written = nullptr; ///< for each handle, a value of `Dirty_handles::find()`
     const Handle_map* handles = nullptr;
     Fades fades;
   };
@@ -95,7 +95,8 @@ public:
     | `stream(i, block_output)` | writes eight points from `i` on, bypassing the caches; returns
       `false` if it writes nothing, and `write` is called instead |
     | `expect(i)` | prefetches the output of `write`; called unless `does_stream()` |
-    | `write_other(i)` | called for the points of a mixed block that are not blended |
+    | `write_other(i)` | called for the points of a mixed block that are not blended, and for those
+      of a block whose holder has `points_at_rest` |
   */
   template <class ConcurrencyTag, bool HasGradients, class Writer>
   void apply(const Input& in,
@@ -212,7 +213,16 @@ private:
   static std::uint8_t computed(const Block_motions& motions, std::size_t block)
   {
     const std::int32_t holder = motions.holder[block];
-    return holder < 0 ? motions.is_blended[block] : motions.is_written[holder] ? whole_block : 0;
+    if (holder < 0)
+      return motions.is_blended[block];
+    return motions.is_written[holder] == points_moved ? whole_block : 0;
+  }
+
+  /// Whether a block without computed points has points for `write_other()`.
+  static bool has_others(const Block_motions& motions, std::size_t block)
+  {
+    const std::int32_t holder = motions.holder[block];
+    return holder < 0 ? holder == mixed_block : motions.is_written[holder] == points_at_rest;
   }
 
   template <class ConcurrencyTag, Blend_outputs Outputs, class Writer>
@@ -238,7 +248,7 @@ private:
           std::uint8_t mask[2]{};
           const auto put = [&](std::size_t block) PCS_LAMBDA_INLINE {
             const std::size_t at = block % 2;
-            if (mask[at] != 0 || motions.holder[block] == mixed_block)
+            if (mask[at] != 0 || has_others(motions, block))
               write_block<Outputs>(block, points.size(), mask[at], out[at], does_stream, writer);
           };
           for (std::size_t block = begin; block < end; ++block) {

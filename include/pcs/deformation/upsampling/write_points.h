@@ -18,6 +18,7 @@ namespace deformation {
 /*!
   Writes points to `output`, an `Output` of `Moved_point_writer`, concurrently. Points of a sampled
   body are blended from the maps of the samples; otherwise each point is a sample, with its own map.
+  In the rest shape, all points get the bits of their positions at rest.
 */
 template <bool HasGradients, class ConcurrencyTag, class Output>
 void write_points(const Moved_points<ConcurrencyTag>& moved, Output& output)
@@ -25,6 +26,13 @@ void write_points(const Moved_points<ConcurrencyTag>& moved, Output& output)
   const pcs::internal::Stage_timer timer(moved.seconds);
   const Sampled_body<ConcurrencyTag>& body = moved.body;
   const Moved_point_writer<ConcurrencyTag, Output> writer(moved, output);
+  if (moved.is_at_rest) {
+    pcs::internal::for_each_index<ConcurrencyTag>(
+        body.number_of_points(),
+        [&](std::size_t place) { writer.write_unmoved(place); },
+        256);
+    return;
+  }
   if (body.is_sampled) {
     moved.upsampling.template apply<ConcurrencyTag, HasGradients>(
         {body.rest_points, body.network.rest, moved.maps},

@@ -1,0 +1,402 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Undo and redo: snapshots bring back points, handles and motions, with all bits.
+
+#include <pcs/Point_set_deformation.h>
+#include <pcs/deformation/handles/Handle_set.h>
+#include <support/deform_cloud.h>
+#include <support/exceptions.h>
+#include <support/threads.h>
+
+#include <CGAL/property_map.h>
+
+#include <boost/test/unit_test.hpp>
+
+#include <algorithm>
+#include <cstring>
+#include <functional>
+#include <numeric>
+#include <random>
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace test_deformation_snapshots {
+
+namespace {
+
+using pcs::Invalid_input;
+using pcs_test::Bar_edit;
+using pcs_test::message_has;
+using pcs_test::Points;
+using pcs_test::Vec3;
+
+using Indices = std::vector<std::size_t>;
+
+const int both_resolutions[] = {1000000, 100};
+
+bool have_equal_bits(const Points& a, const Points& b)
+{
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec3)) == 0;
+}
+
+/// A bar whose coordinates have all bits, with a double point, an outlier, a part without samples
+/// and a part that most handles do not reach.
+struct Cloud
+{
+  Points rest;
+  Indices bottom, middle, top, lid, speck, island;
+
+  Cloud()
+  {
+    rest = pcs_test::box(4, 4, 16, .25);
+    std::mt19937 random(7);
+    for (Vec3& p : rest)
+      p += .02 * pcs_test::random_vector(random);
+    bottom = below(.2);
+    middle = between(1.8, 2.2);
+    top = between(3.8, 5);
+    lid = between(3.2, 3.4);
+    rest.push_back(rest[middle.front()]);
+    rest.push_back(rest[top.front()] + Vec3(.6, .7, .8));
+    for (int k = 0; k < 4; ++k) {
+      speck.push_back(rest.size());
+      rest.push_back(Vec3(2.1, .3, 2) + .01 * pcs_test::random_vector(random));
+    }
+    for (const Vec3& p : pcs_test::box(3, 3, 3, .25)) {
+      island.push_back(rest.size());
+      rest.push_back(p + Vec3(9, 1e-17, -3) + .02 * pcs_test::random_vector(random));
+    }
+    for (Vec3& p : rest)
+      p = 1.3 * p + Vec3(.1, 7.3, -2.1);
+  }
+
+private:
+  Indices below(double z) const { return between(-1, z); }
+  Indices between(double low, double high) const
+  {
+    return pcs_test::select(rest, [&](const Vec3& p) { return p.z() > low && p.z() < high; });
+  }
+};
+
+Indices all_but_the_bottom(const Cloud& cloud)
+{
+  Indices region(cloud.rest.size());
+  std::iota(region.begin(), region.end(), std::size_t(0));
+  for (const std::size_t i : cloud.bottom)
+    region.erase(std::find(region.begin(), region.end(), i));
+  return region;
+}
+
+auto parameters(int samples, const Indices& region)
+{
+  return pcs::parameters::number_of_samples(samples).region_of_interest(region);
+}
+using Session = pcs::Point_set_deformation<Points, decltype(parameters(0, Indices()))>;
+
+pcs::Similarity random_motion(std::mt19937& random)
+{
+  return pcs::Similarity::from_translation(pcs_test::random_vector(random)) *
+         pcs::Similarity::from_turn(pcs_test::random_vector(random));
+}
+
+/// A session and all states that it had.
+struct History
+{
+  struct State
+  {
+    Session::Snapshot snapshot;
+    Points points;
+    std::vector<std::size_t> handles;
+    std::vector<pcs::Similarity> motions;
+    Points continued; ///< after a further motion of the first handle
+  };
+
+  Cloud cloud;
+  Indices region;
+  Points points = cloud.rest;
+  Session session;
+  std::size_t count = 0; ///< of all handles that were ever added
+  std::vector<State> states;
+
+  History(int samples, bool has_region)
+    : region(has_region ? all_but_the_bottom(cloud) : all()),
+      session(points, parameters(samples, region))
+  {
+  }
+
+  std::vector<std::size_t> handles()
+  {
+    std::vector<std::size_t> result;
+    for (std::size_t h = 0; h < count + 2; ++h)
+      try {
+        session.centroid(h);
+        result.push_back(h);
+      } catch (const Invalid_input&) {
+      }
+    return result;
+  }
+
+  std::size_t add(const Indices& indices, double softness = 0)
+  {
+    const std::size_t handle = session.add_handle(indices, softness);
+    BOOST_REQUIRE(handle == count); // a number is given once
+    ++count;
+    return handle;
+  }
+
+  Points continue_from_here()
+  {
+    const auto present = handles();
+    if (!present.empty())
+      session.set_translation(present.front(), Vec3(.3, -.2, .1));
+    session.deform();
+    return points;
+  }
+
+  /// Solves and keeps the state.
+  void keep()
+  {
+    session.deform();
+    State s{session.snapshot(), points, handles(), {}, {}};
+    for (const std::size_t h : s.handles)
+      s.motions.push_back(session.transformation(h));
+    s.continued = continue_from_here();
+    states.push_back(s);
+    check(states.size() - 1);
+  }
+
+  /// Restores a state.
+  void check(std::size_t k)
+  {
+    const State& s = states[k];
+    session.restore(s.snapshot);
+    BOOST_TEST_CONTEXT("state " << k)
+    {
+      BOOST_REQUIRE(have_equal_bits(points, s.points));
+      BOOST_REQUIRE((handles() == s.handles));
+      for (std::size_t i = 0; i < s.handles.size(); ++i) {
+        const Vec3 probe(1, 2, 3);
+        const pcs::Similarity& found = session.transformation(s.handles[i]);
+        BOOST_REQUIRE((found(probe) == s.motions[i](probe)));
+      }
+    }
+  }
+
+  /// Restores a state and goes on from it.
+  void check_continued(std::size_t k)
+  {
+    check(k);
+    BOOST_TEST_CONTEXT("state " << k)
+    BOOST_REQUIRE(have_equal_bits(continue_from_here(), states[k].continued));
+  }
+
+private:
+  Indices all() const
+  {
+    Indices result(cloud.rest.size());
+    std::iota(result.begin(), result.end(), std::size_t(0));
+    return result;
+  }
+};
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(deformation_snapshots)
+
+BOOST_AUTO_TEST_CASE(handles_come_and_go_in_all_orders)
+{
+  for (const int samples : both_resolutions)
+    for (const bool has_region : {false, true}) {
+      std::vector<int> actions{0, 1, 2, 3};
+      do {
+        History h(samples, has_region);
+        h.keep();
+        std::size_t feet = h.add(has_region ? h.cloud.lid : h.cloud.bottom);
+        const std::size_t top = h.add(h.cloud.top);
+        h.session.set_transformation(top, pcs::rotation(Vec3(1, 0, 0), .7, Vec3(0, 7, 0)));
+        h.keep();
+        for (const int action : actions) {
+          if (action == 0)
+            h.session.set_translation(h.add(h.cloud.middle), Vec3(.5, 0, 0));
+          else if (action == 1)
+            h.session.remove_handle(top);
+          else if (action == 2) // it has not moved: its points must keep their bits
+            h.session.remove_handle(feet);
+          else
+            h.session.set_translation(h.add(h.cloud.island, 1), Vec3(0, .5, 0));
+          h.keep();
+        }
+        std::vector<std::size_t> order(h.states.size());
+        std::iota(order.begin(), order.end(), std::size_t(0));
+        std::mt19937 random(unsigned(actions[0] * 4 + actions[1]));
+        for (int repetition = 0; repetition < 3; ++repetition) {
+          for (const std::size_t k : order)
+            h.check(k);
+          for (const std::size_t k : order)
+            h.check_continued(k);
+          std::shuffle(order.begin(), order.end(), random);
+        }
+      } while (std::next_permutation(actions.begin(), actions.end()));
+    }
+}
+
+BOOST_AUTO_TEST_CASE(any_state_of_a_random_history_comes_back)
+{
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    std::vector<Points> of_threads;
+    for (const int threads : {1, 8}) {
+      of_threads.emplace_back();
+      pcs_test::with_threads(threads, [&] {
+        std::mt19937 random(seed);
+        History h(both_resolutions[seed % 2], seed % 4 < 2);
+        const Indices* const sets[] = {&h.cloud.middle,
+                                       &h.cloud.top,
+                                       &h.cloud.lid,
+                                       &h.cloud.speck,
+                                       &h.cloud.island};
+        for (int step = 0; step < 25; ++step) {
+          const auto present = h.handles();
+          const auto kind = random() % 4;
+          if (kind == 0 && !present.empty())
+            h.session.remove_handle(present[random() % present.size()]);
+          else if (kind == 1 && !h.states.empty())
+            h.check(random() % h.states.size());
+          else
+            try {
+              const std::size_t handle = h.add(*sets[random() % 5], random() % 3 ? 0.0 : .5);
+              if (random() % 3)
+                h.session.set_transformation(handle, random_motion(random));
+            } catch (const Invalid_input&) { // the points belong to another handle
+            }
+          h.keep();
+          h.check_continued(random() % h.states.size());
+          if (step % 5 == 4) {
+            h.session.reset();
+            BOOST_REQUIRE(have_equal_bits(h.points, h.cloud.rest));
+          }
+        }
+        for (const History::State& s : h.states)
+          of_threads.back().insert(of_threads.back().end(), s.points.begin(), s.points.end());
+      });
+    }
+    BOOST_TEST(have_equal_bits(of_threads[0], of_threads[1]));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(an_unsolved_handle_is_undone)
+{
+  for (const int samples : both_resolutions) {
+    History h(samples, false);
+    h.add(h.cloud.bottom);
+    h.session.set_translation(h.add(h.cloud.top), Vec3(1, 0, 0));
+    h.keep();
+    const std::size_t added = h.add(h.cloud.middle);
+    h.session.restore(h.states[0].snapshot);
+    BOOST_TEST(h.session.deform().seconds.factorization == 0); // the matrices are still valid
+    BOOST_TEST(have_equal_bits(h.points, h.states[0].points));
+    h.add(h.cloud.middle);
+    h.session.preprocess();
+    h.check_continued(0);
+    for (const auto handle : {added, added + 1, added + 2}) {
+      const auto says_so = message_has("no handle " + std::to_string(handle));
+      BOOST_CHECK_EXCEPTION(h.session.remove_handle(handle), Invalid_input, says_so);
+      BOOST_CHECK_EXCEPTION(h.session.set_scale(handle, 2), Invalid_input, says_so);
+      BOOST_CHECK_EXCEPTION(h.session.centroid(handle), Invalid_input, says_so);
+      BOOST_CHECK_EXCEPTION(h.session.transformation(handle), Invalid_input, says_so);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(another_rest_shape_is_refused_and_changes_nothing)
+{
+  History h(100, false);
+  h.add(h.cloud.bottom);
+  const std::size_t top = h.add(h.cloud.top);
+  h.keep();
+  h.session.set_translation(top, Vec3(1, 0, 0));
+  h.keep();
+  h.session.accept();
+  const std::size_t added = h.add(h.cloud.middle);
+  const Points before = h.points;
+  for (const History::State& s : h.states)
+    BOOST_CHECK_EXCEPTION(h.session.restore(s.snapshot), Invalid_input, message_has("accept()"));
+  BOOST_TEST(have_equal_bits(h.points, before));
+  const Vec3 centroid = h.session.centroid(added);
+  h.states.clear();
+  h.keep();
+  h.session.remove_handle(added);
+  h.keep();
+  h.check_continued(0);
+  BOOST_TEST((h.session.centroid(added) == centroid));
+  h.session.reset();
+  BOOST_TEST(have_equal_bits(h.points, before)); // the accepted positions
+}
+
+BOOST_AUTO_TEST_CASE(normals_and_gradients_come_back)
+{
+  using Element = std::tuple<Vec3, Vec3, Eigen::Matrix3d>;
+  const Cloud cloud;
+  for (const int samples : both_resolutions) {
+    std::vector<Element> points;
+    std::mt19937 random(3);
+    for (const Vec3& p : cloud.rest)
+      points.emplace_back(p, pcs_test::random_vector(random), Eigen::Matrix3d::Identity());
+    const auto np = pcs::parameters::number_of_samples(samples)
+                        .point_map(CGAL::Nth_of_tuple_property_map<0, Element>())
+                        .normal_map(CGAL::Nth_of_tuple_property_map<1, Element>())
+                        .gradient_map(CGAL::Nth_of_tuple_property_map<2, Element>());
+    pcs::Point_set_deformation<std::vector<Element>, std::decay_t<decltype(np)>> session(points,
+                                                                                         np);
+    const std::vector<Element> rest = points;
+    const auto at_rest = session.snapshot();
+    const auto feet = session.add_handle(cloud.bottom);
+    const auto top = session.add_handle(cloud.top);
+    session.set_rotation(top, Vec3(1, 2, 3), 1);
+    session.deform();
+    const auto bent = session.snapshot();
+    const std::vector<Element> bent_points = points;
+    session.remove_handle(feet);
+    session.set_translation(session.add_handle(cloud.island), Vec3(1, 2, 3));
+    session.deform();
+    BOOST_TEST((points != bent_points));
+    session.restore(bent);
+    BOOST_TEST((points == bent_points));
+    session.restore(at_rest);
+    BOOST_TEST((points == rest));
+    BOOST_CHECK_THROW(session.centroid(feet), Invalid_input);
+    session.restore(bent);
+    BOOST_TEST((points == bent_points));
+    session.reset();
+    BOOST_TEST((points == rest));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(snapshots_share_the_points_of_handles)
+{
+  const Cloud cloud;
+  const std::function<bool(double)> callback;
+  pcs::internal::Progress progress(callback);
+  pcs::deformation::Sampling_options options;
+  pcs::deformation::Session<CGAL::Sequential_tag> session(cloud.rest, options, nullptr, progress);
+  const auto add = [&](const Indices& indices) {
+    return session.add_handle({indices.begin(), indices.end()}, 0, "test");
+  };
+  const std::size_t bottom = add(cloud.bottom), top = add(cloud.top);
+  const auto first = session.snapshot();
+  add(cloud.middle);
+  session.remove_handle(top);
+  const auto second = session.snapshot();
+  BOOST_REQUIRE(second.handles.size() == 3u);
+  BOOST_TEST(second.handles[bottom] == first.handles[bottom]);
+  BOOST_TEST(!second.handles[top]);
+  session.restore(first);
+  const auto third = session.snapshot();
+  BOOST_REQUIRE(third.handles.size() == 2u);
+  BOOST_TEST(third.handles[bottom] == first.handles[bottom]);
+  BOOST_TEST(third.handles[top] == first.handles[top]);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_deformation_snapshots
