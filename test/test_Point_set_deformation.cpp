@@ -664,6 +664,60 @@ BOOST_AUTO_TEST_CASE(a_session_can_be_moved)
   BOOST_TEST((s.points == Bar_session::fresh(150, bend())));
 }
 
+BOOST_AUTO_TEST_CASE(a_session_is_a_member_of_a_class)
+{
+  // Only the maps are part of the type.
+  using Element = std::pair<Vec3, Vec3>;
+  using Maps = decltype(pcs::parameters::point_map(CGAL::First_of_pair_property_map<Element>()));
+  struct Editor
+  {
+    Points points = Bar_edit().points;
+    std::vector<Element> elements;
+    int calls = 0;
+    pcs::Point_set_deformation<Points> session;
+    pcs::Point_set_deformation<std::vector<Element>, Maps, CGAL::Sequential_tag> of_elements;
+
+    static std::vector<Element> elements_of(const Points& points)
+    {
+      std::vector<Element> result;
+      for (const Vec3& p : points)
+        result.emplace_back(p, Vec3(0, 0, 1));
+      return result;
+    }
+
+    explicit Editor(int samples)
+      : elements(elements_of(points)),
+        session(points, parameters(samples).callback([this](double) { return ++calls > 0; })),
+        of_elements(elements,
+                    pcs::parameters::stiffness(1).number_of_samples(samples).point_map(
+                        CGAL::First_of_pair_property_map<Element>()))
+    {
+    }
+  };
+  for (const int samples : both_resolutions) {
+    const Bar_edit edit;
+    Editor editor(samples);
+    const auto bend_it = [&](auto& session) {
+      session.add_handle(edit.handles[0].indices);
+      session.set_transformation(session.add_handle(edit.handles[1].indices), bend());
+      session.deform();
+    };
+    bend_it(editor.session);
+    bend_it(editor.of_elements);
+    BOOST_TEST(editor.calls > 0);
+    if (samples == 150)
+      BOOST_TEST(editor.session.number_of_samples() == 150u);
+    const Points expected = Bar_session::fresh(samples, bend());
+    BOOST_TEST((editor.points == expected));
+    BOOST_TEST((editor.elements == Editor::elements_of(expected)));
+    // A deduced type is the same, so that another session can replace the member.
+    editor.points = edit.points;
+    editor.session = pcs::Point_set_deformation(editor.points, pcs::parameters::stiffness(2));
+    bend_it(editor.session);
+    BOOST_TEST((editor.points != edit.points));
+  }
+}
+
 BOOST_AUTO_TEST_CASE(a_cancelled_construction_leaves_a_defined_object)
 {
   Points points = Bar_edit().points;

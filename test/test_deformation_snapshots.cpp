@@ -13,6 +13,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <functional>
 #include <numeric>
@@ -47,7 +48,7 @@ struct Cloud
   Points rest;
   Indices bottom, middle, top, lid, speck, island;
 
-  Cloud()
+  explicit Cloud(bool is_shuffled = false)
   {
     rest = pcs_test::box(4, 4, 16, .25);
     std::mt19937 random(7);
@@ -69,9 +70,25 @@ struct Cloud
     }
     for (Vec3& p : rest)
       p = 1.3 * p + Vec3(.1, 7.3, -2.1);
+    if (is_shuffled)
+      shuffle(random);
   }
 
 private:
+  void shuffle(std::mt19937& random)
+  {
+    Indices order(rest.size());
+    std::iota(order.begin(), order.end(), std::size_t(0));
+    std::shuffle(order.begin(), order.end(), random);
+    Points shuffled(rest.size());
+    for (std::size_t i = 0; i < rest.size(); ++i)
+      shuffled[order[i]] = rest[i];
+    rest = shuffled;
+    for (Indices* part : {&bottom, &middle, &top, &lid, &speck, &island})
+      for (std::size_t& i : *part)
+        i = order[i];
+  }
+
   Indices below(double z) const { return between(-1, z); }
   Indices between(double low, double high) const
   {
@@ -119,8 +136,9 @@ struct History
   std::size_t count = 0; ///< of all handles that were ever added
   std::vector<State> states;
 
-  History(int samples, bool has_region)
-    : region(has_region ? all_but_the_bottom(cloud) : all()),
+  History(int samples, bool has_region, bool is_shuffled = false)
+    : cloud(is_shuffled),
+      region(has_region ? all_but_the_bottom(cloud) : all()),
       session(points, parameters(samples, region))
   {
   }
@@ -141,6 +159,7 @@ struct History
   {
     const std::size_t handle = session.add_handle(indices, softness);
     BOOST_REQUIRE(handle == count); // a number is given once
+    BOOST_REQUIRE_NO_THROW(session.centroid(handle));
     ++count;
     return handle;
   }
@@ -249,7 +268,7 @@ BOOST_AUTO_TEST_CASE(any_state_of_a_random_history_comes_back)
       of_threads.emplace_back();
       pcs_test::with_threads(threads, [&] {
         std::mt19937 random(seed);
-        History h(both_resolutions[seed % 2], seed % 4 < 2);
+        History h(both_resolutions[seed % 2], seed % 4 < 2, seed > 4);
         const Indices* const sets[] = {&h.cloud.middle,
                                        &h.cloud.top,
                                        &h.cloud.lid,
@@ -369,6 +388,91 @@ BOOST_AUTO_TEST_CASE(normals_and_gradients_come_back)
     BOOST_TEST((points == bent_points));
     session.reset();
     BOOST_TEST((points == rest));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(the_gradient_of_one_point_is_the_written_one)
+{
+  using Element = std::tuple<Vec3, Eigen::Matrix3d>;
+  for (const int kind : {0, 1, 2, 3}) {
+    const Cloud cloud(kind > 1);
+    const Indices region = all_but_the_bottom(cloud);
+    const int samples = both_resolutions[kind % 2];
+    std::vector<Element> points;
+    for (const Vec3& p : cloud.rest)
+      points.emplace_back(p, Eigen::Matrix3d::Identity());
+    const auto np = parameters(samples, region)
+                        .point_map(CGAL::Nth_of_tuple_property_map<0, Element>())
+                        .gradient_map(CGAL::Nth_of_tuple_property_map<1, Element>());
+    pcs::Point_set_deformation session(points, np);
+    Points other_points = cloud.rest;
+    Session other(other_points, parameters(samples, region)); // without gradients
+    std::size_t number_of_inverted = 0;
+    const auto check = [&] {
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        const Eigen::Matrix3d& written = std::get<1>(points[i]);
+        BOOST_REQUIRE((session.deformation_gradient(i) == written));
+        BOOST_REQUIRE((other.deformation_gradient(i) == written));
+        const Eigen::Matrix3d r = session.local_rotation(i);
+        BOOST_REQUIRE((r * r.transpose() - Eigen::Matrix3d::Identity()).norm() < 1e-12);
+        // The polar decomposition: the rest of the gradient is symmetric.
+        const Eigen::Matrix3d u =
+            written.determinant() > 0 ? Eigen::Matrix3d(r.transpose() * written) : r;
+        number_of_inverted += written.determinant() > 0 ? 0 : 1;
+        BOOST_REQUIRE((u - u.transpose()).norm() < 1e-10);
+      }
+    };
+    const auto edit = [&](auto& s) {
+      const auto top = s.add_handle(cloud.top);
+      s.set_rotation(top, Vec3(1, 2, 3), 1);
+      s.set_scale(top, 1.2);
+      s.add_handle(cloud.lid); // not moved
+      s.set_translation(s.add_handle(cloud.middle, .5), Vec3(.4, 0, 0));
+      s.set_rotation(s.add_handle(Indices{cloud.speck[0]}), Vec3(1, 0, 0), .5);
+      s.deform();
+    };
+    check(); // the rest shape
+    const auto at_rest = session.snapshot();
+    const auto other_at_rest = other.snapshot();
+    edit(session);
+    edit(other);
+    check();
+    BOOST_TEST((session.deformation_gradient(cloud.lid[0]) == Eigen::Matrix3d::Identity()));
+    BOOST_TEST((session.deformation_gradient(cloud.top[0]) != Eigen::Matrix3d::Identity()));
+    BOOST_TEST(std::abs(session.deformation_gradient(cloud.top[0]).determinant() - 1.728) < 1e-12);
+    session.remove_handle(1);
+    session.preprocess();
+    BOOST_CHECK_EXCEPTION(session.deformation_gradient(0), Invalid_input, message_has("call it"));
+    BOOST_CHECK_EXCEPTION(session.local_rotation(0), Invalid_input, message_has("call it first"));
+    session.deform();
+    other.remove_handle(1);
+    other.deform();
+    check();
+    session.restore(at_rest);
+    other.restore(other_at_rest);
+    check();
+    BOOST_TEST(number_of_inverted < points.size() / 10);
+    const auto says_so = message_has("no point " + std::to_string(points.size()));
+    BOOST_CHECK_EXCEPTION(session.local_rotation(points.size()), Invalid_input, says_so);
+    BOOST_CHECK_EXCEPTION(session.deformation_gradient(points.size()), Invalid_input, says_so);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_common_rotation_is_the_local_rotation_of_all_points)
+{
+  const Bar_edit edit;
+  for (const int samples : both_resolutions) {
+    Points points = edit.points;
+    pcs::Point_set_deformation session(points, pcs::parameters::number_of_samples(samples));
+    const pcs::Similarity motion =
+        pcs::rotation(Vec3(1, 2, 3), .8, Vec3(0, 0, 2)) * pcs::scaling(1.5, Vec3(0, 0, 0));
+    for (const auto& handle : edit.handles)
+      session.set_transformation(session.add_handle(handle.indices), motion);
+    session.deform();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      BOOST_REQUIRE((session.local_rotation(i) - motion.rotation()).norm() < 1e-6);
+      BOOST_REQUIRE((session.deformation_gradient(i) - 1.5 * motion.rotation()).norm() < 1e-6);
+    }
   }
 }
 

@@ -18,8 +18,11 @@
 #include <pcs/deformation/access/carry_points.h>
 #include <pcs/deformation/access/check_session.h>
 #include <pcs/deformation/access/read_options.h>
+#include <pcs/deformation/model/Affine_map.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
+
+#include <Eigen/Core>
 
 #include <cstddef>
 #include <functional>
@@ -44,14 +47,16 @@ namespace pcs {
   \tparam PointRange a model of `RandomAccessRange`, to which the object keeps a reference. Points
           are read by the constructor and `accept()`, and written by `deform()`, `restore()` and
           `reset()`, all through the point map
-  \tparam NamedParameters the type of the chain given to the constructor (deduced)
+  \tparam NamedParameters the type of a chain of named parameters that has the property maps given to
+          the constructor; other parameters have no effect on the type. The default is for points
+          without maps. It is deduced from the arguments of the constructor
   \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or
           `CGAL::Parallel_if_available_tag`. With a parallel tag, `put()` of the maps is called from
           several threads, for different elements
 
   \par Memory
-  The object needs about 150 bytes per point with normals, and about 300 at the peak of the
-  construction. After the first frames, `deform()` allocates nothing.
+  The object needs about 175 bytes per point with normals, and about 325 at the peak of the
+  construction. With coordinates in single precision, the former are about 150. After the first frames, `deform()` allocates nothing.
 
   \par Thread safety and determinism
   Different objects may be used concurrently, but each object only by one thread at a time. Results
@@ -157,10 +162,11 @@ public:
     \throws Invalid_input if there are no points, a coordinate or normal is not finite, all points
             coincide, or a parameter is out of range
   */
-  explicit Point_set_deformation(PointRange& points, const NamedParameters& np = NamedParameters())
+  template <class GivenParameters = NamedParameters>
+  explicit Point_set_deformation(PointRange& points, const GivenParameters& np = GivenParameters())
     : m_access(points, np)
   {
-    if constexpr (Access::is_ok) {
+    if constexpr (Access::is_ok && Access::template has_maps_of<GivenParameters>()) {
       const char* function = "pcs::Point_set_deformation";
       const auto sampling = deformation::read_sampling_options(np, function);
       m_elastic = deformation::read_elastic_options(np, function);
@@ -348,6 +354,25 @@ public:
     deformation::carry_points<ConcurrencyTag>(*m_session, points, np, function);
   }
 
+  /// Returns the deformation gradient of a point in the current shape: the derivative of its
+  /// position with respect to its position at rest, as `gradient_map` receives it. Nothing is
+  /// written. O(1), about the time of eight points of `deform()`. [-]
+  /// \param i the position of the point in the range
+  /// \throws Invalid_input if there is no such point, or if the matrices were factorised for other
+  ///         handles since the last `deform()`
+  Eigen::Matrix3d deformation_gradient(std::size_t i) const
+  {
+    return gradient(i, "pcs::Point_set_deformation::deformation_gradient()");
+  }
+
+  /// Returns the local rotation of a point from rest: the rotation nearest to its deformation
+  /// gradient (polar decomposition), or the identity if the determinant of the gradient is not
+  /// positive. O(1). Throws like `deformation_gradient()`. [-]
+  Eigen::Matrix3d local_rotation(std::size_t i) const
+  {
+    return deformation::polar_rotation(gradient(i, "pcs::Point_set_deformation::local_rotation()"));
+  }
+
   /// Returns the current shape, its handles and their motions. The snapshot stores data of the
   /// samples, and shares the lists of the points of handles with this object.
   /// \throws Invalid_input if handles were added or removed since the last `deform()`
@@ -432,6 +457,16 @@ private:
     m_motion[handle] = motion;
   }
 
+  Eigen::Matrix3d gradient(std::size_t i, const char* function) const
+  {
+    deformation::check_ready(m_session, function);
+    deformation::check_point(m_session, i, function);
+    internal::check(!m_session->is_ahead_of_shape(),
+                    function,
+                    "handles were added or removed since the last deform(); call it first");
+    return m_session->gradient(i);
+  }
+
   void check_points(const char* function) const
   {
     deformation::check_ready(m_session, function);
@@ -469,7 +504,7 @@ template <class PointRange>
 Point_set_deformation(PointRange&) -> Point_set_deformation<PointRange>;
 template <class PointRange, class NamedParameters>
 Point_set_deformation(PointRange&, const NamedParameters&)
-    -> Point_set_deformation<PointRange, NamedParameters>;
+    -> Point_set_deformation<PointRange, deformation::Map_parameters<NamedParameters>>;
 
 } // namespace pcs
 

@@ -15,6 +15,8 @@
 #include <pcs/deformation/upsampling/write_points.h>
 #include <pcs/internal/progress.h>
 
+#include <Eigen/Core>
+
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -128,6 +130,10 @@ public:
     part of the map of the point. `prepare_carrying()` must be called before.
   */
   void carry(Vec3& point, Vec3& normal, Eigen::Matrix3d& gradient) const;
+
+  /// Returns the linear part of the map of a point in the current shape, as `write()` writes it. It
+  /// must not be called if `is_ahead_of_shape()`. O(1).
+  Eigen::Matrix3d gradient(std::size_t i) const;
 
   /// Builds the search trees of `carry()` unless they exist. O(n log n).
   void prepare_carrying();

@@ -326,6 +326,27 @@ Upsampling::Block_motions block_motions(Session_state<Tag>& s, const std::vector
           s.local_transforms.empty() ? Upsampling::Fades() : s.fades.of_blocks()};
 }
 
+/// Returns the gradient of the points of a handle in the current shape.
+template <class Tag>
+Eigen::Matrix3d gradient_of_handle(const Session_state<Tag>& s, Node_constraint h)
+{
+  const Similarity& t = s.local_transforms[static_cast<std::size_t>(h)];
+  return t.scale() * t.rotation();
+}
+
+/// Returns the gradient of a point of a sampled body in the current shape. The gradients of points
+/// at the same position may differ by rounding, as their blocks do.
+template <class Tag>
+Eigen::Matrix3d gradient_of_samples(const Session_state<Tag>& s, std::size_t place)
+{
+  const Upsampling::Block_motions motions{s.sites.is_blended().data(),
+                                          s.sites.holder().data(),
+                                          nullptr,
+                                          s.handle_maps.data(),
+                                          s.fades.of_blocks()};
+  return s.upsampling.gradient(place, s.body.rest_points, motions);
+}
+
 // ---- points outside the session
 
 template <class Tag>
@@ -631,6 +652,25 @@ void Session<ConcurrencyTag>::carry(Vec3& point, Vec3& normal, Eigen::Matrix3d& 
     internal::carry_with_handle(s, h, local, point, normal, gradient);
   else if (h == free_node || h == outlier_site)
     internal::carry_with_samples(s, site, local, point, normal, gradient);
+}
+
+template <class ConcurrencyTag>
+Eigen::Matrix3d Session<ConcurrencyTag>::gradient(std::size_t i) const
+{
+  const Session_state<ConcurrencyTag>& s = *m_state;
+  if (s.is_at_rest)
+    return Eigen::Matrix3d::Identity();
+  const std::size_t site = s.body.site_of_input[i];
+  const Node_constraint h = s.sites[site];
+  if (h >= 0)
+    return internal::gradient_of_handle(s, h);
+  if (h == outlier_site)
+    return Eigen::Map<const Row_major_matrix>(s.outlier_maps.of_site(s.body, site).a);
+  if (h != free_node)
+    return Eigen::Matrix3d::Identity();
+  if (s.body.is_sampled)
+    return internal::gradient_of_samples(s, s.body.place_of_input(i));
+  return Eigen::Map<const Row_major_matrix>(s.maps[site].a);
 }
 
 template <class ConcurrencyTag>

@@ -44,6 +44,17 @@ struct No_map
 
 } // namespace internal
 
+/// The chain of named parameters if it has property maps, otherwise an empty chain.
+template <class NamedParameters>
+using Map_parameters = std::conditional_t<
+    pcs::internal::is_given_v<NamedParameters, CGAL::internal_np::point_t> ||
+        pcs::internal::is_given_v<NamedParameters, CGAL::internal_np::normal_t> ||
+        pcs::internal::is_given_v<NamedParameters, pcs::internal_np::vector_map_t> ||
+        pcs::internal::is_given_v<NamedParameters, pcs::internal_np::tensor_map_t> ||
+        pcs::internal::is_given_v<NamedParameters, pcs::internal_np::gradient_map_t>,
+    NamedParameters,
+    parameters::Default_named_parameters>;
+
 /*!
   Reads and writes the points of a range through the property maps of a chain of named parameters.
   Checks the concepts of range and maps. If `is_ok` is false, a `static_assert` has failed, and no
@@ -149,28 +160,28 @@ public:
       return is_memory_map<Point_map, Element>();
   }();
 
-  /// Keeps a reference to `points`, and copies of the maps.
-  Point_access(PointRange& points, const NamedParameters& np) : m_points(&points)
+  /// Whether another chain of named parameters has maps of the same types.
+  template <class OtherParameters>
+  static constexpr bool has_maps_of()
   {
-    if constexpr (has_copied_keys)
-      m_keys.assign(std::begin(points), std::end(points));
-    if constexpr (pcs::internal::is_given_v<NamedParameters, CGAL::internal_np::point_t>)
-      m_point_map = std::make_unique<Point_map>(
-          CGAL::parameters::get_parameter(np, CGAL::internal_np::point_map));
-    else
-      m_point_map = std::make_unique<Point_map>();
-    if constexpr (has_normals)
-      m_normal_map = std::make_unique<Normal_map>(
-          CGAL::parameters::get_parameter(np, CGAL::internal_np::normal_map));
-    if constexpr (has_vectors)
-      m_vector_map = std::make_unique<Vector_map>(
-          CGAL::parameters::get_parameter(np, pcs::internal_np::vector_map));
-    if constexpr (has_tensors)
-      m_tensor_map = std::make_unique<Tensor_map>(
-          CGAL::parameters::get_parameter(np, pcs::internal_np::tensor_map));
-    if constexpr (has_gradient_map)
-      m_gradient_map = std::make_unique<Gradient_map>(
-          CGAL::parameters::get_parameter(np, pcs::internal_np::gradient_map));
+    using Other = Point_access<PointRange, OtherParameters>;
+    return std::is_same_v<Point_map, typename Other::Point_map> &&
+           std::is_same_v<Normal_map, typename Other::Normal_map> &&
+           std::is_same_v<Vector_map, typename Other::Vector_map> &&
+           std::is_same_v<Tensor_map, typename Other::Tensor_map> &&
+           std::is_same_v<Gradient_map, typename Other::Gradient_map>;
+  }
+
+  /// Keeps a reference to `points`, and copies of the maps, which are those of `NamedParameters`.
+  template <class GivenParameters>
+  Point_access(PointRange& points, const GivenParameters& np) : m_points(&points)
+  {
+    static_assert(has_maps_of<GivenParameters>(),
+                  "pcs::Point_set_deformation: the second template argument must be a chain of "
+                  "named parameters with the maps that are given to the constructor, such as "
+                  "decltype(pcs::parameters::point_map(map)); it may be omitted if none is given");
+    if constexpr (has_maps_of<GivenParameters>())
+      keep_maps(np);
   }
 
   std::size_t size() const
@@ -350,6 +361,30 @@ public:
   }
 
 private:
+  template <class GivenParameters>
+  void keep_maps(const GivenParameters& np)
+  {
+    if constexpr (has_copied_keys)
+      m_keys.assign(std::begin(*m_points), std::end(*m_points));
+    if constexpr (pcs::internal::is_given_v<GivenParameters, CGAL::internal_np::point_t>)
+      m_point_map = std::make_unique<Point_map>(
+          CGAL::parameters::get_parameter(np, CGAL::internal_np::point_map));
+    else
+      m_point_map = std::make_unique<Point_map>();
+    if constexpr (has_normals)
+      m_normal_map = std::make_unique<Normal_map>(
+          CGAL::parameters::get_parameter(np, CGAL::internal_np::normal_map));
+    if constexpr (has_vectors)
+      m_vector_map = std::make_unique<Vector_map>(
+          CGAL::parameters::get_parameter(np, pcs::internal_np::vector_map));
+    if constexpr (has_tensors)
+      m_tensor_map = std::make_unique<Tensor_map>(
+          CGAL::parameters::get_parameter(np, pcs::internal_np::tensor_map));
+    if constexpr (has_gradient_map)
+      m_gradient_map = std::make_unique<Gradient_map>(
+          CGAL::parameters::get_parameter(np, pcs::internal_np::gradient_map));
+  }
+
   PCS_ALWAYS_INLINE auto iterator(std::size_t i) const
   {
     using Iterator = decltype(std::begin(*m_points));

@@ -42,6 +42,16 @@ void check_handle(const Pointer& session, std::size_t handle, const char* caller
     throw Invalid_input(std::string(caller) + ": there is no handle " + std::to_string(handle));
 }
 
+/// Checks that the session has the point.
+template <class Pointer>
+void check_point(const Pointer& session, std::size_t i, const char* caller)
+{
+  if (i >= session->number_of_points())
+    throw Invalid_input(std::string(caller) + ": there is no point " + std::to_string(i) +
+                        "; points are numbered from 0 to " +
+                        std::to_string(session->number_of_points() - 1));
+}
+
 /// Checks that there are still as many points as at the construction of the session.
 template <class Pointer>
 void check_number_of_points(const Pointer& session, std::size_t n, const char* caller)

@@ -66,6 +66,16 @@ struct Sampled_body
   {
     return place_of_site.empty() ? site : place_of_site[site];
   }
+  /// Returns the upsampling index of a point of the caller. O(number of points at its position).
+  std::size_t place_of_input(std::size_t i) const
+  {
+    if (is_in_callers_order)
+      return i;
+    std::size_t place = first_place(site_of_input[i]); // points of a site are consecutive
+    while (input_of_place[place] != i)
+      ++place;
+    return place;
+  }
   Vec3 rest_of_site(std::size_t site) const { return rest_points.position(first_place(site)); }
 
   std::vector<std::uint32_t> component_of_sample() const;

@@ -47,6 +47,22 @@ inline Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& a)
   return improve_rotation(a, Quaternion(start), number_of_steps).toRotationMatrix();
 }
 
+/// Returns the nearest rotation as `nearest_rotation()`, up to rounding also for large stretches.
+inline Eigen::Matrix3d polar_rotation(const Eigen::Matrix3d& a)
+{
+  Eigen::Matrix3d r = nearest_rotation(a);
+  if (!(a.determinant() > 0))
+    return r;
+  constexpr int number_of_steps = 20; // Newton's method: one or two from a near start
+  for (int i = 0; i < number_of_steps; ++i) {
+    const Vec3 turn = newton_turn(a * r.transpose(), 0);
+    r = rotation_exp(turn).toRotationMatrix() * r;
+    if (turn.squaredNorm() < 1e-26)
+      break;
+  }
+  return r;
+}
+
 /// Returns the normal of a surface after the linear map `a`, with unchanged length.
 inline Vec3 turn_normal(const Eigen::Matrix3d& a, const Vec3& normal)
 {

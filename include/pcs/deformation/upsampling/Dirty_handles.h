@@ -14,9 +14,9 @@
 namespace pcs {
 namespace deformation {
 
-/// Values of `Dirty_handles::find()` for a handle: its points are not written, written at their
-/// positions at rest, or moved.
-constexpr char points_unwritten = 0, points_at_rest = 1, points_moved = 2;
+/// Values of `Dirty_handles::find()` for a handle: its points are not written, moved, or written
+/// at their positions at rest.
+constexpr char points_unwritten = 0, points_moved = 1, points_at_rest = 2;
 
 /// The handles with displaced points.
 class Dirty_handles

@@ -116,6 +116,26 @@ public:
       apply_to_all(std::integral_constant<Blend_outputs, Blend_outputs::positions>());
   }
 
+  /// Returns the gradient of point `i` as the last `apply()` computed it, or would have with
+  /// `HasGradients`. O(1): computes one block.
+  Eigen::Matrix3d
+  gradient(std::size_t i, const Point_blocks& points, const Block_motions& motions) const
+  {
+    Block_input in{};
+    in.differences = m_differences.data();
+    const Local_frame frame; // gradients do not depend on it
+    in.frame_unit = frame.unit;
+    in.frame_origin = frame.origin.data();
+    in.handles = motions.handles;
+    set_input(points, motions, i / lanes, in);
+    Block_output out{};
+    choose_blend_block<Blend_outputs::gradients>()(in, out);
+    Eigen::Matrix3d result;
+    for (int k = 0; k < 9; ++k)
+      result(k / 3, k % 3) = out.gradient[k][i % lanes];
+    return result;
+  }
+
 private:
   struct Member
   {
