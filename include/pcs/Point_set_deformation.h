@@ -18,7 +18,6 @@
 #include <pcs/deformation/access/carry_points.h>
 #include <pcs/deformation/access/check_session.h>
 #include <pcs/deformation/access/read_options.h>
-#include <pcs/deformation/model/Affine_map.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
 
@@ -47,16 +46,17 @@ namespace pcs {
   \tparam PointRange a model of `RandomAccessRange`, to which the object keeps a reference. Points
           are read by the constructor and `accept()`, and written by `deform()`, `restore()` and
           `reset()`, all through the point map
-  \tparam NamedParameters the type of a chain of named parameters that has the property maps given to
-          the constructor; other parameters have no effect on the type. The default is for points
-          without maps. It is deduced from the arguments of the constructor
+  \tparam NamedParameters the type of a chain of named parameters that has the property maps given
+          to the constructor; other parameters have no effect on the type. The default is for points
+          without maps. Deduced from the arguments of the constructor
   \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or
           `CGAL::Parallel_if_available_tag`. With a parallel tag, `put()` of the maps is called from
           several threads, for different elements
 
   \par Memory
-  The object needs about 175 bytes per point with normals, and about 325 at the peak of the
-  construction. With coordinates in single precision, the former are about 150. After the first frames, `deform()` allocates nothing.
+  The object needs about 175 bytes per point with normals, 24 fewer with coordinates in single
+  precision, and about 325 at the peak of the construction. After the first frames, `deform()`
+  allocates nothing.
 
   \par Thread safety and determinism
   Different objects may be used concurrently, but each object only by one thread at a time. Results
@@ -362,7 +362,8 @@ public:
   ///         handles since the last `deform()`
   Eigen::Matrix3d deformation_gradient(std::size_t i) const
   {
-    return gradient(i, "pcs::Point_set_deformation::deformation_gradient()");
+    check_gradient(i, "pcs::Point_set_deformation::deformation_gradient()");
+    return m_session->gradient(i);
   }
 
   /// Returns the local rotation of a point from rest: the rotation nearest to its deformation
@@ -370,7 +371,8 @@ public:
   /// positive. O(1). Throws like `deformation_gradient()`. [-]
   Eigen::Matrix3d local_rotation(std::size_t i) const
   {
-    return deformation::polar_rotation(gradient(i, "pcs::Point_set_deformation::local_rotation()"));
+    check_gradient(i, "pcs::Point_set_deformation::local_rotation()");
+    return m_session->local_rotation(i);
   }
 
   /// Returns the current shape, its handles and their motions. The snapshot stores data of the
@@ -457,14 +459,13 @@ private:
     m_motion[handle] = motion;
   }
 
-  Eigen::Matrix3d gradient(std::size_t i, const char* function) const
+  void check_gradient(std::size_t i, const char* function) const
   {
     deformation::check_ready(m_session, function);
     deformation::check_point(m_session, i, function);
     internal::check(!m_session->is_ahead_of_shape(),
                     function,
                     "handles were added or removed since the last deform(); call it first");
-    return m_session->gradient(i);
   }
 
   void check_points(const char* function) const

@@ -18,6 +18,7 @@ set(deformation_session
   upsampling/Handle_fades.h
   upsampling/Outlier_maps.h
   upsampling/Point_carrier.h
+  upsampling/Rest_positions.h
   upsampling/Upsampling.h
   upsampling/read_maps.h
   upsampling/write_points.h)

@@ -134,6 +134,9 @@ public:
   /// Returns the linear part of the map of a point in the current shape, as `write()` writes it. It
   /// must not be called if `is_ahead_of_shape()`. O(1).
   Eigen::Matrix3d gradient(std::size_t i) const;
+  /// Returns the rotation nearest to `gradient(i)`, or the identity if the determinant is not
+  /// positive.
+  Eigen::Matrix3d local_rotation(std::size_t i) const;
 
   /// Builds the search trees of `carry()` unless they exist. O(n log n).
   void prepare_carrying();

@@ -674,6 +674,12 @@ Eigen::Matrix3d Session<ConcurrencyTag>::gradient(std::size_t i) const
 }
 
 template <class ConcurrencyTag>
+Eigen::Matrix3d Session<ConcurrencyTag>::local_rotation(std::size_t i) const
+{
+  return polar_rotation(gradient(i));
+}
+
+template <class ConcurrencyTag>
 void Session<ConcurrencyTag>::prepare_carrying()
 {
   Session_state<ConcurrencyTag>& s = *m_state;
