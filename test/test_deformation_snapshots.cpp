@@ -41,7 +41,7 @@ bool have_equal_bits(const Points& a, const Points& b)
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec3)) == 0;
 }
 
-/// A bar whose coordinates have all bits, with a double point, an outlier, a part without samples
+/// A bar whose coordinates have all bits, with double points, an outlier, a part without samples
 /// and a part that most handles do not reach.
 struct Cloud
 {
@@ -58,7 +58,8 @@ struct Cloud
     middle = between(1.8, 2.2);
     top = between(3.8, 5);
     lid = between(3.2, 3.4);
-    rest.push_back(rest[middle.front()]);
+    for (std::size_t i = 0; i < top.front(); i += 3)
+      rest.insert(rest.end(), 2, Vec3(rest[i]));
     rest.push_back(rest[top.front()] + Vec3(.6, .7, .8));
     for (int k = 0; k < 4; ++k) {
       speck.push_back(rest.size());
@@ -126,6 +127,7 @@ struct History
     Points points;
     std::vector<std::size_t> handles;
     std::vector<pcs::Similarity> motions;
+    Points centroids; ///< of the handles
     Points continued; ///< after a further motion of the first handle
   };
 
@@ -177,9 +179,11 @@ struct History
   void keep()
   {
     session.deform();
-    State s{session.snapshot(), points, handles(), {}, {}};
-    for (const std::size_t h : s.handles)
+    State s{session.snapshot(), points, handles(), {}, {}, {}};
+    for (const std::size_t h : s.handles) {
       s.motions.push_back(session.transformation(h));
+      s.centroids.push_back(session.centroid(h));
+    }
     s.continued = continue_from_here();
     states.push_back(s);
     check(states.size() - 1);
@@ -198,6 +202,7 @@ struct History
         const Vec3 probe(1, 2, 3);
         const pcs::Similarity& found = session.transformation(s.handles[i]);
         BOOST_REQUIRE((found(probe) == s.motions[i](probe)));
+        BOOST_REQUIRE((session.centroid(s.handles[i]) == s.centroids[i]));
       }
     }
   }
@@ -473,6 +478,30 @@ BOOST_AUTO_TEST_CASE(a_common_rotation_is_the_local_rotation_of_all_points)
       BOOST_REQUIRE((session.local_rotation(i) - motion.rotation()).norm() < 1e-6);
       BOOST_REQUIRE((session.deformation_gradient(i) - 1.5 * motion.rotation()).norm() < 1e-6);
     }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(coordinates_in_single_precision_come_back)
+{
+  const Cloud cloud;
+  for (const int samples : both_resolutions) {
+    std::vector<Eigen::Vector3f> points;
+    for (const Vec3& p : cloud.rest)
+      points.push_back(p.cast<float>());
+    const std::vector<Eigen::Vector3f> rest = points;
+    pcs::Point_set_deformation session(points, pcs::parameters::number_of_samples(samples));
+    const auto feet = session.add_handle(cloud.bottom);
+    session.set_rotation(session.add_handle(cloud.top), Vec3(0, 0, 1), 1);
+    session.deform();
+    const std::vector<Eigen::Vector3f> bent = points;
+    const auto snapshot = session.snapshot();
+    session.remove_handle(feet);
+    session.deform();
+    BOOST_TEST((points != bent));
+    session.restore(snapshot);
+    BOOST_TEST((points == bent));
+    session.reset();
+    BOOST_TEST((points == rest));
   }
 }
 
