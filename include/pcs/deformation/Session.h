@@ -36,7 +36,7 @@ struct Session_snapshot
   std::vector<Vec3> centroids;                               ///< of the handles
   std::vector<Affine_map> maps;                              ///< of the samples
   std::uint64_t rest_setting = 0;                            ///< identifies session and rest shape
-  std::uint64_t setting = 0;                                 ///< and the handles as well
+  std::uint64_t setting = 0;                                 ///< identifies the handles, too
   bool is_at_rest = true;
 };
 

@@ -59,8 +59,8 @@ public:
         m_handle_of_site[body.site_of_input[i]] = outside_region;
   }
 
-  /// Returns the number of handles, including removed ones that are not behind the last handle of
-  /// the last `restore()`.
+  /// Returns the length of the lists of handles, which contain removed handles. `restore()` brings
+  /// back the length of its time.
   std::size_t size() const { return m_transforms.size(); }
   bool contains(std::size_t handle) const { return handle < size() && m_points[handle]; }
   bool empty() const

@@ -23,7 +23,7 @@ class Dirty_handles
 {
 public:
   /*!
-    Finds for each handle how its points are written: they are if it moves or has moved before.
+    Finds for each handle how its points are written. They are if it moves or has moved before.
     Until `finish()`, all of these handles count as moved, since an output that throws leaves some
     of their points displaced. Allocates nothing if the number of handles is unchanged.
 
