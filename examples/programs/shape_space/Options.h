@@ -313,7 +313,7 @@ inline void check(const Options& o)
   if (o.load.empty()) {
     if (o.trees.empty() && o.skeletons.empty())
       fail("expected --tree or --skeleton, twice");
-    for (const auto& [name, files] :
+    for (const auto [name, files] :
          {std::make_pair("--tree", &o.trees), std::make_pair("--skeleton", &o.skeletons)})
       if (files->size() == 1)
         fail(std::string(name) + " is given once, expected at least 2 times");
