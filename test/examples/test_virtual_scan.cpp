@@ -146,6 +146,8 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_and_touches_no_file)
   refuses(*this, "--output scan.ply --tree missing.swc", "missing.swc: there is no such file");
   refuses(*this, "--output scan.ply --tree in.ply", "in.ply: line 1");
   refuses(*this, "--output scan.ply --truth scan.ply", "the same file");
+  refuses(*this, "--output scan.ply --truth ./scan.ply", "the same file");
+  refuses(*this, "--output a.ply --tree scan.ply --swc scan.ply", "the same file");
   refuses(*this, "--output scan.ply --truth no/a.csv", "there is no such folder");
   refuses(*this, "--output no/scan.ply", "no/scan.ply");
   refuses(*this, "--output scan.off --preset fruit", "scan.off");

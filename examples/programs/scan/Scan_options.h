@@ -5,6 +5,7 @@
 #ifndef PCS_EXAMPLES_PROGRAMS_SCAN_SCAN_OPTIONS_H
 #define PCS_EXAMPLES_PROGRAMS_SCAN_SCAN_OPTIONS_H
 
+#include "common/Distinct_files.h"
 #include "common/is_seed.h"
 #include <pcs/core/errors.h>
 #include <pcs/generators/Tree_habit.h>
@@ -12,7 +13,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -181,28 +181,17 @@ inline void complete(Scan_options& o)
   if (o.height && (!(*o.height > 0) || !std::isfinite(*o.height) || !o.tree.empty()))
     throw pcs::Invalid_input("--height must be positive, and cannot be used with --tree");
 
-  const std::array<std::pair<const char*, const std::string*>, 5> files = {{{"--output", &o.output},
-                                                                            {"--truth", &o.truth},
-                                                                            {"--swc", &o.swc},
-                                                                            {"--report", &o.report},
-                                                                            {"--tree", &o.tree}}};
   namespace fs = std::filesystem;
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    const auto& [name, path] = files[i];
+  Distinct_files distinct;
+  distinct.add_input(o.tree);
+  for (const std::string& path : {o.output, o.truth, o.swc, o.report}) {
     std::error_code error;
-    const fs::path folder = fs::path(*path).parent_path();
-    if (!path->empty() && !folder.empty() && !fs::is_directory(folder, error))
-      throw pcs::IO_error(*path, "there is no such folder");
-    if (!path->empty() && fs::is_directory(*path, error))
-      throw pcs::IO_error(*path, "is a directory, expected a file name");
-    for (std::size_t j = 0; j < i; ++j) {
-      const auto& [other, other_path] = files[j];
-      if (!path->empty() && !other_path->empty() &&
-          (fs::path(*path).lexically_normal() == fs::path(*other_path).lexically_normal() ||
-           fs::equivalent(*path, *other_path, error)))
-        throw pcs::Invalid_input(std::string(other) + " and " + name +
-                                 " are the same file: " + *path);
-    }
+    const fs::path folder = fs::path(path).parent_path();
+    if (!path.empty() && !folder.empty() && !fs::is_directory(folder, error))
+      throw pcs::IO_error(path, "there is no such folder");
+    if (!path.empty() && fs::is_directory(path, error))
+      throw pcs::IO_error(path, "is a directory, expected a file name");
+    distinct.add_output(path);
   }
 }
 
