@@ -1,0 +1,339 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Program: cuts the scan of a plot with any number of points into overlapping tiles.
+
+#include "common/Distinct_files.h"
+#include "common/Report_file.h"
+#include "common/run_program.h"
+#include "tiling/Count_grid.h"
+#include "tiling/Point_files.h"
+#include "tiling/Tile_files.h"
+#include "tiling/Tile_tree.h"
+#include <pcs/IO/points/Point_table.h>
+#include <pcs/core/errors.h>
+#include <pcs/internal/Stopwatch.h>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+namespace program {
+
+using Json = nlohmann::ordered_json;
+
+/// The smallest buffer that is derived from the heights [L].
+constexpr double least_buffer = 5;
+
+/// The derived buffer as a fraction of the height within cells: the crown radius of broad trees.
+constexpr double buffer_per_height = 1.0 / 3;
+
+/// Cells in memory. With their copies during splitting, they need some 150 MB.
+constexpr std::size_t max_cells = std::size_t(1) << 20;
+
+constexpr std::size_t max_tiles = 10000;
+
+struct Options
+{
+  std::vector<std::string> inputs;
+  std::string folder, report, up = "z";
+  std::int64_t tile_points = 5000000, open_files = 100;
+  std::optional<double> buffer;
+  double cell = 1;
+  bool is_quiet = false;
+};
+
+const char* help()
+{
+  return R"(Scans: PLY, LAS (LAZ if built with LASzip), PCD, PTX, OFF, OBJ, or text (xyz, txt, csv,
+asc, pts, pwn), also compressed by gzip (.gz) if built with zlib. Several files are one plot.
+Tiles: DIR/tile_0001.ply, ..., with the properties that all files have in common. A tile has the
+points of its core and those up to the buffer around it. `is_core` is 1 in the core, else 0. Every
+point is in the core of exactly one tile. `index` is its number in all files, from 0.
+Manifest: DIR/tiles.json has the boxes and counts of the tiles. It is written last: without it, the
+tiles are incomplete. A folder that has tiles already is refused.
+Buffer: by default a third of the height of the trees, but at least 5. The height is the difference
+of the highest and lowest points of a cell; 99 % of the points are in cells with at most this one.
+Memory: at most 1,048,576 cells (150 MB), a chunk of 262,144 points, and 0.5 MB per open file. If
+more cells have points, the cell size is doubled until they are fewer.
+Files are read twice, and once more for every further --open-files tiles.
+
+For example:
+  tile_points --input plot_a.laz plot_b.laz --folder tiles
+  segment_trees --input tiles/tile_0001.ply --points labelled_0001.ply
+
+Exit codes: 0 success, 1 bad input or usage, 2 internal error.)";
+}
+
+void declare(CLI::App& app, Options& options)
+{
+  app.footer(help());
+  app.set_version_flag("--version", PCS_PROGRAM_VERSION);
+  app.add_option("--input", options.inputs, "one or more scans of one plot")->required();
+  app.add_option("--folder", options.folder, "folder for the tiles and tiles.json")->required();
+  app.add_option("--report", options.report, "the manifest with seconds of each stage (JSON)");
+  app.add_option("--tile-points", options.tile_points, "most points in the core of a tile")
+      ->check(CLI::Range(std::int64_t(1), std::int64_t(1) << 40))
+      ->capture_default_str();
+  app.add_option("--buffer", options.buffer, "width around the core; default: by the heights");
+  app.add_option("--cell", options.cell, "smallest side of a tile: tiles consist of such cells")
+      ->capture_default_str();
+  app.add_option("--up", options.up, "up direction: x, y, z, -x, -y or -z")
+      ->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}))
+      ->capture_default_str();
+  app.add_option("--open-files", options.open_files, "tiles that are written in one pass")
+      ->check(CLI::Range(std::int64_t(1), std::int64_t(max_tiles)))
+      ->capture_default_str();
+  app.add_flag("--quiet", options.is_quiet, "print errors only");
+}
+
+/// Checks the numbers further than CLI11 can, which accepts NaN. Throws `pcs::Invalid_input`.
+void check(const Options& options)
+{
+  constexpr double largest = 1e9;
+  if (options.buffer && !(*options.buffer >= 0 && *options.buffer <= largest))
+    throw pcs::Invalid_input("--buffer is " + std::to_string(*options.buffer) +
+                             ", expected a length between 0 and 1e9");
+  if (!(options.cell >= 1 / largest && options.cell <= largest))
+    throw pcs::Invalid_input("--cell is " + std::to_string(options.cell) +
+                             ", expected a length between 1e-9 and 1e9");
+  std::set<std::string> paths;
+  for (const std::string& input : options.inputs) {
+    std::error_code error;
+    const std::string path = std::filesystem::weakly_canonical(input, error).string();
+    if (!paths.insert(error ? input : path).second)
+      throw pcs::Invalid_input(input +
+                               " is an input twice; its points would be in the tiles twice");
+  }
+}
+
+/// Makes the folder. Throws if it cannot be made, or has the tiles of another run, which would be
+/// mixed with the new ones.
+void make_folder(const std::string& folder)
+{
+  namespace fs = std::filesystem;
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (!fs::is_directory(folder))
+    throw pcs::IO_error(folder, "is not a directory and cannot be made one");
+  fs::directory_iterator entries(folder, error);
+  if (error)
+    throw pcs::IO_error(folder, "cannot be listed: " + error.message());
+  for (const fs::directory_entry& entry : entries) {
+    const std::string name = entry.path().filename().string();
+    const bool is_tile = name.rfind("tile_", 0) == 0 && entry.path().extension() == ".ply";
+    if (is_tile || name == "tiles.json")
+      throw pcs::IO_error(folder,
+                          "has a file of another run, " + name +
+                              "; remove tiles.json and tile_*.ply, or use another folder");
+  }
+}
+
+/// What the first pass finds.
+struct Survey
+{
+  Count_grid grid;
+  std::vector<Grid_cell> cells;
+  double lowest = 0, highest = 0; ///< heights [L]
+  double height = 0;              ///< within cells [L]
+};
+
+Survey survey(Point_files& files, const Options& options, std::size_t axis_up)
+{
+  Survey result{Count_grid(options.cell, max_cells), {}};
+  bool is_first = true;
+  files.count([&](const pcs::IO::Point_table& chunk, std::uint64_t first, const auto& file) {
+    for (std::size_t i = 0; i < chunk.number_of_points(); ++i) {
+      const auto& p = chunk.points()[i];
+      for (int axis = 0; axis < 3; ++axis)
+        if (std::abs(p[axis]) > result.grid.largest_coordinate())
+          throw pcs::IO_error(file.path,
+                              "point " + std::to_string(first + i) +
+                                  " of all inputs: " + char('x' + axis) +
+                                  " exceeds 1e15 cells; remove the point, or raise --cell");
+      const double height = p[static_cast<int>(axis_up)];
+      result.lowest = is_first ? height : std::min(result.lowest, height);
+      result.highest = is_first ? height : std::max(result.highest, height);
+      is_first = false;
+      result.grid.add(horizontal(p, axis_up), height);
+    }
+  });
+  if (files.number_of_points() == 0)
+    throw pcs::Invalid_input("the inputs have no points");
+  result.cells = result.grid.take();
+  result.height = height_within_cells(result.cells);
+  return result;
+}
+
+/// Returns a warning about tiles with too many points; empty if there are none.
+std::string warning_of_large_tiles(const Tile_tree& tree, const Options& options, double cell)
+{
+  std::size_t count = 0;
+  std::uint64_t most = 0;
+  for (const Tile& tile : tree.tiles())
+    if (tile.number_of_core_points > static_cast<std::uint64_t>(options.tile_points)) {
+      ++count;
+      most = std::max(most, tile.number_of_core_points);
+    }
+  if (count == 0)
+    return {};
+  Json size = cell;
+  return std::to_string(count) + " tiles of a single cell of " + size.dump() +
+         " have more points than --tile-points, up to " + std::to_string(most) +
+         (cell > options.cell ? "; the cell was enlarged because the plot is large"
+                              : "; reduce --cell, or thin the scan");
+}
+
+Json to_json(const Box_2& box)
+{
+  return {{"low", box.low}, {"high", box.high}};
+}
+
+Json to_json(const Point_files& files)
+{
+  Json inputs = Json::array();
+  for (const Point_files::File& file : files.files())
+    inputs.push_back({{"file", file.path}, {"points", file.number_of_points}});
+  return {{"inputs", inputs}, {"points", files.number_of_points()}};
+}
+
+/// `counts`: the number of points of each tile.
+Json to_json(const Tile_tree& tree, const std::vector<std::uint64_t>& counts)
+{
+  Json tiles = Json::array();
+  for (std::size_t t = 0; t < counts.size(); ++t) {
+    const Tile& tile = tree.tiles()[t];
+    tiles.push_back({{"file", Tile_files::name_of_file(t)},
+                     {"core", to_json(tile.core)},
+                     {"buffered", to_json(tile.buffered)},
+                     {"points", counts[t]},
+                     {"core_points", tile.number_of_core_points}});
+  }
+  return tiles;
+}
+
+/// Returns all warnings of a run.
+std::vector<std::string>
+all_warnings(const Point_files& files, const Tile_tree& tree, const Options& options, double cell)
+{
+  std::vector<std::string> warnings = files.warnings();
+  for (const char* name : {"index", "is_core"})
+    if (files.shared().has(name))
+      warnings.push_back("the property '" + std::string(name) + "' of the input is replaced");
+  const std::string large = warning_of_large_tiles(tree, options, cell);
+  if (!large.empty())
+    warnings.push_back(large);
+  return warnings;
+}
+
+/// Returns the manifest without the tiles.
+Json make_manifest(const Point_files& files,
+                   const Survey& found,
+                   const Options& options,
+                   std::size_t axis_up,
+                   double buffer)
+{
+  std::vector<std::string> axes = {"x", "y", "z"};
+  axes.erase(axes.begin() + static_cast<std::ptrdiff_t>(axis_up));
+  Json manifest = to_json(files);
+  manifest["up"] = options.up;
+  manifest["axes"] = axes;
+  manifest["heights"] = {found.lowest, found.highest};
+  manifest["height_within_cells"] = found.height;
+  manifest["buffer"] = buffer;
+  manifest["cell"] = found.grid.cell_size();
+  manifest["tile_points"] = options.tile_points;
+  return manifest;
+}
+
+/// Splits the plot. Throws `pcs::Invalid_input` if there are too many tiles.
+Tile_tree make_tiles(Survey& found, const Options& options, double buffer)
+{
+  Tile_tree tree(std::move(found.cells),
+                 found.grid,
+                 static_cast<std::uint64_t>(options.tile_points),
+                 buffer);
+  if (tree.tiles().size() > max_tiles)
+    throw pcs::Invalid_input(std::to_string(tree.tiles().size()) + " tiles are needed, at most " +
+                             std::to_string(max_tiles) + " are written; raise --tile-points");
+  return tree;
+}
+
+void run(const Options& options)
+{
+  check(options);
+  pcs::internal::Stopwatch all, stage;
+  const auto axis_up = static_cast<std::size_t>(options.up.back() - 'x');
+  const std::string manifest_path = (std::filesystem::path(options.folder) / "tiles.json").string();
+  Distinct_files distinct;
+  for (const std::string& input : options.inputs)
+    distinct.add_input(input);
+  distinct.add_output(options.report);
+  distinct.add_output(manifest_path);
+
+  Point_files files(options.inputs, options.is_quiet);
+  make_folder(options.folder);
+  Tile_files(options.folder, files.shared(), 0).check_writable();
+  Report_file manifest_file(manifest_path);
+  std::unique_ptr<Report_file> report_file;
+  if (!options.report.empty())
+    report_file = std::make_unique<Report_file>(options.report);
+
+  Survey found = survey(files, options, axis_up);
+  const double buffer =
+      options.buffer.value_or(std::max(least_buffer, buffer_per_height * found.height));
+  const Tile_tree tree = make_tiles(found, options, buffer);
+  Tile_files tiles(options.folder, files.shared(), files.number_of_points());
+  for (std::size_t t = 0; t < tree.tiles().size(); ++t)
+    distinct.add_output(tiles.path_of(t));
+  const double seconds_count = stage.lap();
+
+  const std::vector<std::uint64_t> counts =
+      tiles.write(files, tree, axis_up, static_cast<std::size_t>(options.open_files));
+  const std::vector<std::string> warnings =
+      all_warnings(files, tree, options, found.grid.cell_size());
+  Json manifest = make_manifest(files, found, options, axis_up, buffer);
+  manifest["warnings"] = warnings;
+  manifest["seconds"] = all.lap();
+  manifest["tiles"] = to_json(tree, counts);
+  if (report_file) {
+    Json report = manifest;
+    report["seconds_count"] = seconds_count;
+    report["seconds_write"] = stage.lap();
+    report_file->commit(report);
+  }
+  manifest_file.commit(manifest);
+  tiles.keep();
+
+  for (const std::string& warning : warnings)
+    if (!options.is_quiet)
+      std::cerr << "tile_points: warning: " << warning << '\n';
+  if (!options.is_quiet)
+    std::cout << "tiles " << tree.tiles().size() << ", points " << files.number_of_points()
+              << ", buffer " << buffer << ", seconds " << manifest["seconds"] << '\n';
+}
+
+} // namespace program
+
+int main(int argc, char** argv)
+{
+  program::Options options;
+  CLI::App app("Cuts the scan of a plot of any size into tiles with buffers.", "tile_points");
+  program::declare(app, options);
+  return program::run_program(app, argc, argv, [&] {
+    program::run(options);
+    return true;
+  });
+}
