@@ -298,6 +298,7 @@ void run(const Options& options)
   Tile_files tiles(options.folder, files.shared(), files.number_of_points());
   for (std::size_t t = 0; t < tree.tiles().size(); ++t)
     distinct.add_output(tiles.path_of(t));
+  tiles.check_space(tree.estimated_points());
   const double seconds_count = stage.lap();
 
   const std::vector<std::uint64_t> counts =

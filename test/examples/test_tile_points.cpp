@@ -22,6 +22,7 @@
 #include <random>
 #include <string>
 #include <tiling/Count_grid.h>
+#include <tiling/Tile_tree.h>
 #include <utility>
 #include <vector>
 
@@ -325,6 +326,20 @@ BOOST_AUTO_TEST_CASE(borders_of_cells_are_exact)
     BOOST_TEST(cell.points.number_of_points == 1u);
 }
 
+BOOST_AUTO_TEST_CASE(points_of_tiles_are_estimated)
+{
+  const Table plot = make_plot(20000, 11);
+  program::Count_grid grid(0.5, 1000000);
+  for (const Table::Point_3& p : plot.points())
+    grid.add({p.x(), p.y()}, p.z());
+  const program::Tile_tree tree(grid.take(), grid, 2000, 3);
+  std::size_t count = 0;
+  for (const Table::Point_3& p : plot.points())
+    tree.for_each_tile({p.x(), p.y()}, 0, tree.tiles().size(), [&](std::size_t) { ++count; });
+  BOOST_TEST(count > 30000u);
+  BOOST_TEST(std::abs(tree.estimated_points() / double(count) - 1) < 0.05);
+}
+
 BOOST_AUTO_TEST_CASE(no_tile_remains_if_one_cannot_be_written)
 {
   std::string text = "0.5 0.5 0\n";
@@ -352,6 +367,9 @@ BOOST_AUTO_TEST_CASE(tiles_of_another_run_are_refused)
   BOOST_TEST(err.find("another run") != std::string::npos, err);
   BOOST_TEST((bytes_of_tiles("tiles") == before));
   BOOST_TEST(content("tiles/tiles.json") == manifest_before);
+  std::filesystem::remove(path("tiles/tiles.json")); // as if the run had been killed
+  BOOST_TEST(run("--input in.ply --folder tiles") == 1);
+  BOOST_TEST(err.find("tile_0001.ply") != std::string::npos, err);
 }
 
 BOOST_AUTO_TEST_CASE(bad_input_is_refused)

@@ -75,6 +75,26 @@ public:
   /// Checks that tiles can be written.
   void check_writable() const { check_output(path_of(0), schema()); }
 
+  /// Throws `pcs::IO_error` if the free space of the folder is too small for that many points.
+  void check_space(double number_of_points) const
+  {
+    double row_size = 0;
+    for (const pcs::IO::Property_description& p : m_schema)
+      row_size += static_cast<double>(size_of(p.type));
+    const double needed = number_of_points * row_size;
+    std::error_code error;
+    const auto free = static_cast<double>(std::filesystem::space(m_folder, error).available);
+    if (error || needed <= free)
+      return;
+    const auto in_megabytes = [](double bytes) {
+      return std::to_string(static_cast<std::uint64_t>(bytes / 1e6)) + " MB";
+    };
+    throw pcs::IO_error(m_folder,
+                        "the tiles need some " + in_megabytes(needed) + ", and " +
+                            in_megabytes(free) +
+                            " are free; raise --tile-points, or reduce --buffer");
+  }
+
   /// Writes all tiles. Reads the inputs once for every `max_open` tiles. Returns the number of
   /// points of each tile.
   std::vector<std::uint64_t>

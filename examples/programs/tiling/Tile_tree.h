@@ -66,10 +66,15 @@ public:
       box.high[axis] = m_grid.border(e.last[axis] + 1);
     }
     split(0, m_cells.size(), box);
+    estimate_points();
     m_cells = {};
   }
 
   const std::vector<Tile>& tiles() const { return m_tiles; }
+
+  /// Returns an estimate of the number of points in all tiles with their buffers, as if the points
+  /// of a cell were in its center.
+  double estimated_points() const { return m_estimated_points; }
 
   /// Calls `use(t)` for all tiles `t` of `[first, end)` whose buffered box contains `p`.
   template <class Use>
@@ -161,6 +166,18 @@ private:
     return middle;
   }
 
+  void estimate_points()
+  {
+    for (const Grid_cell& cell : m_cells) {
+      Position_2 center{};
+      for (std::size_t axis = 0; axis < 2; ++axis)
+        center[axis] = m_grid.border(cell.index[axis]) + m_grid.cell_size() / 2;
+      for_each_tile(center, 0, m_tiles.size(), [&](std::size_t) {
+        m_estimated_points += static_cast<double>(cell.points.number_of_points);
+      });
+    }
+  }
+
   void add_tile(const Box_2& box, std::uint64_t count)
   {
     Tile tile{box, box, count};
@@ -193,6 +210,7 @@ private:
   const Count_grid& m_grid;
   std::uint64_t m_max_points;
   double m_buffer;
+  double m_estimated_points = 0;
   std::vector<Node> m_nodes;
   std::vector<Tile> m_tiles;
 };
