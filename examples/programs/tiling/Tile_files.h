@@ -107,7 +107,7 @@ public:
     return counts;
   }
 
-  /// Does not remove the files any more.
+  /// Keeps the files that were written.
   void keep() { m_written.clear(); }
 
 private:
