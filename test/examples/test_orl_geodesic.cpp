@@ -19,6 +19,7 @@
 #include <sstream>
 #include <string>
 #include <sys/resource.h>
+#include <utility>
 #include <vector>
 
 namespace test_orl_geodesic {
@@ -153,7 +154,8 @@ BOOST_AUTO_TEST_CASE(every_place_on_the_path_has_points_and_a_skeleton)
     const auto comma = line.find(',');
     const long tip_a = std::stol(line.substr(0, comma)), tip_b = std::stol(line.substr(comma + 1));
     BOOST_TEST((tip_a > 0 || tip_b > 0));
-    for (const auto [tip, tree] : {std::make_pair(tip_a, &a), std::make_pair(tip_b, &b)})
+    const std::pair<long, const orl_test::Tree*> tips[] = {{tip_a, &a}, {tip_b, &b}};
+    for (const auto& [tip, tree] : tips)
       if (tip != -1) {
         BOOST_TEST_REQUIRE((tip >= 1 && static_cast<std::size_t>(tip) <= num_vertices(*tree)));
         BOOST_TEST(out_degree(static_cast<std::size_t>(tip) - 1, *tree) == 0u);

@@ -146,7 +146,9 @@ inline std::vector<Vec3> to_eigen(const std::vector<Point>& points)
 inline double chamfer(const std::vector<Vec3>& a, const std::vector<Vec3>& b)
 {
   double result = 0;
-  for (const auto [from, to] : {std::make_pair(&a, &b), std::make_pair(&b, &a)}) {
+  using Clouds = std::pair<const std::vector<Vec3>*, const std::vector<Vec3>*>;
+  const Clouds directions[] = {{&a, &b}, {&b, &a}};
+  for (const auto& [from, to] : directions) {
     const pcs::neighborhood::Nearest_neighbors search(*to);
     std::vector<pcs::neighborhood::Nearest_neighbors::Neighbor> found;
     double sum = 0;

@@ -313,8 +313,10 @@ inline void check(const Options& o)
   if (o.load.empty()) {
     if (o.trees.empty() && o.skeletons.empty())
       fail("expected --tree or --skeleton, twice");
-    for (const auto [name, files] :
-         {std::make_pair("--tree", &o.trees), std::make_pair("--skeleton", &o.skeletons)})
+    const std::pair<const char*, const std::vector<std::string>*> lists[] = {
+        {"--tree", &o.trees},
+        {"--skeleton", &o.skeletons}};
+    for (const auto& [name, files] : lists)
       if (files->size() == 1)
         fail(std::string(name) + " is given once, expected at least 2 times");
     if (!o.trees.empty() && !o.skeletons.empty() && o.trees.size() != o.skeletons.size())

@@ -230,7 +230,9 @@ BOOST_AUTO_TEST_CASE(nothing_goes_beyond_the_reach)
   std::mt19937 random(14);
   const std::vector<Vec3> one = cylinder(random, 500), two = cylinder(random, 400);
   std::vector<double> nearest; // in both directions
-  for (const auto [from, to] : {std::make_pair(&one, &two), std::make_pair(&two, &one)}) {
+  using Clouds = std::pair<const std::vector<Vec3>*, const std::vector<Vec3>*>;
+  const Clouds directions[] = {{&one, &two}, {&two, &one}};
+  for (const auto& [from, to] : directions) {
     const pcs::neighborhood::Nearest_neighbors search(*to);
     std::vector<pcs::neighborhood::Nearest_neighbors::Neighbor> found;
     for (const Vec3& p : *from) {
