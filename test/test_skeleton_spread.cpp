@@ -215,20 +215,33 @@ BOOST_AUTO_TEST_CASE(a_cancelled_estimate_continues)
 
 BOOST_AUTO_TEST_CASE(copies_keep_nine_tenths_of_small_scans_and_thin_large_ones)
 {
-  const std::vector<pcs::skeleton::Vec3> small(1000, pcs::skeleton::Vec3::Zero()),
-      large(400000, pcs::skeleton::Vec3::Zero()), tiny(99, pcs::skeleton::Vec3::Zero());
-  const std::vector<std::uint8_t> wood(1000, 1);
-  const auto copies = pcs::skeleton::resample_scan(small, wood, {}, 2);
-  BOOST_TEST_REQUIRE(copies.size() == 2u);
-  BOOST_TEST(copies[0].points.size() > 850u);
-  BOOST_TEST(copies[0].points.size() < 950u);
-  BOOST_TEST(copies[0].points.size() == copies[0].is_wood.size());
-  BOOST_TEST(copies[0].points.size() != copies[1].points.size());
-  BOOST_TEST(copies[0].stations.empty());
-  const auto thinned = pcs::skeleton::resample_scan(large, {}, {}, 1);
-  BOOST_TEST(thinned[0].points.size() > 39000u);
-  BOOST_TEST(thinned[0].points.size() < 41000u);
-  BOOST_TEST(pcs::skeleton::resample_scan(tiny, {}, {}, 5).empty());
+  using pcs::skeleton::resample_scan;
+  using pcs::skeleton::Vec3;
+  const pcs::skeleton::Scan_points small{std::vector<Vec3>(1000, Vec3::Zero()),
+                                         std::vector<std::uint8_t>(1000, 1),
+                                         {},
+                                         {}};
+  const auto first = resample_scan(small, 0), second = resample_scan(small, 1);
+  BOOST_TEST(first.positions.size() > 850u);
+  BOOST_TEST(first.positions.size() < 950u);
+  BOOST_TEST(first.positions.size() == first.is_wood.size());
+  BOOST_TEST(first.positions.size() != second.positions.size());
+  BOOST_TEST(first.stations.empty());
+  const pcs::skeleton::Scan_points large{std::vector<Vec3>(400000, Vec3::Zero()), {}, {}, {}};
+  const auto thinned = resample_scan(large, 0);
+  BOOST_TEST(thinned.positions.size() > 39000u);
+  BOOST_TEST(thinned.positions.size() < 41000u);
+}
+
+BOOST_AUTO_TEST_CASE(a_scan_of_few_points_has_no_copies)
+{
+  const Cloud points = cylinder(99, 0.1, 1);
+  Tree tree;
+  const pcs::Skeleton_report report =
+      pcs::extract_tree_skeleton(points, tree, np::number_of_resamples(5));
+  BOOST_CHECK(report.status == pcs::Status::converged);
+  BOOST_TEST(report.spread.number_of_copies == 0u);
+  BOOST_TEST(report.spread.number_of_empty_copies == 0u);
 }
 
 BOOST_AUTO_TEST_CASE(a_negative_number_of_copies_is_refused)
@@ -248,7 +261,7 @@ BOOST_AUTO_TEST_CASE(the_distance_from_the_copies_is_in_tolerances)
   report.total = {10, 50, 0.5};
   report.breast_height = 1.3;
   const pcs::skeleton::Vec3 root(0, 0, 0);
-  pcs::skeleton::internal::Copied_figures figures;
+  pcs::skeleton::Copy_descriptors figures;
   BOOST_TEST(figures.distance_from_medians(report, root) == 0);
   for (int k = 0; k < 4; ++k)
     figures.add(report, root);
@@ -264,7 +277,7 @@ BOOST_AUTO_TEST_CASE(the_distance_from_the_copies_is_in_tolerances)
                     1e-6);
   other = report; // one copy that differs has no influence
   other.total.volume = 5;
-  pcs::skeleton::internal::Copied_figures mixed;
+  pcs::skeleton::Copy_descriptors mixed;
   mixed.add(other, root);
   for (int k = 0; k < 3; ++k)
     mixed.add(report, root);

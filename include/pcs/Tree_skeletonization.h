@@ -10,24 +10,21 @@
 #include <pcs/core/Skeleton_report.h>
 #include <pcs/core/Tree_skeleton.h>
 #include <pcs/core/errors.h>
-#include <pcs/core/parameters/check_value.h>
 #include <pcs/internal/progress.h>
+#include <pcs/skeleton/Resampled_session.h>
 #include <pcs/skeleton/Session.h>
-#include <pcs/skeleton/estimate_spread.h>
 #include <pcs/skeleton/input/caller_types.h>
 #include <pcs/skeleton/input/check_input.h>
+#include <pcs/skeleton/input/read_maps.h>
 #include <pcs/skeleton/input/read_options.h>
+#include <pcs/skeleton/resampling/resample_scan.h>
+#include <pcs/skeleton/result/write_points.h>
 #include <pcs/skeleton/result/write_result.h>
 
 #include <CGAL/property_map.h>
 
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <functional>
-#include <iterator>
 #include <memory>
-#include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -75,6 +72,7 @@ public:
   using Session = skeleton::Session<ConcurrencyTag>;
 
 private:
+  using Resampled_session = skeleton::Resampled_session<ConcurrencyTag>;
   static constexpr bool is_range_ok = is_random_access_range_v<const PointRange>;
   static_assert(
       is_range_ok,
@@ -218,22 +216,19 @@ public:
     if constexpr (is_ok) {
       skeleton::Input_options options = skeleton::read_skeleton_options(m_np, function);
       m_callback = std::move(options.callback);
-      std::vector<skeleton::Vec3> input = read_points();
-      skeleton::check_input(input, options.hints, function);
-      std::vector<std::uint8_t> is_wood = read_wood();
-      options.hints.stations = read_stations();
-      options.hints.normals = read_normals(options.hints.slices);
-      if (options.number_of_resamples > 0) {
-        m_hints = options.hints;
-        m_resamples = {skeleton::resample_scan(input,
-                                               is_wood,
-                                               options.hints.stations,
-                                               options.number_of_resamples,
-                                               options.hints.normals),
-                       options.hints};
-      }
-      m_session =
-          std::make_unique<Session>(std::move(input), std::move(is_wood), std::move(options.hints));
+      const auto point_map =
+          internal::choose(m_np,
+                           CGAL::internal_np::point_map,
+                           CGAL::Identity_property_map<std::decay_t<typename Types::Element>>());
+      skeleton::Scan_points scan;
+      scan.positions = skeleton::internal::read_input(points, point_map, function);
+      skeleton::check_input(scan.positions, options.hints, function);
+      scan.is_wood = skeleton::internal::read_wood(points, m_np, function);
+      scan.stations = skeleton::internal::read_stations(points, m_np);
+      scan.normals = skeleton::internal::read_normals(points, m_np, options.hints.slices, function);
+      m_resampled = std::make_unique<Resampled_session>(std::move(scan),
+                                                        std::move(options.hints),
+                                                        options.number_of_resamples);
     }
   }
 
@@ -245,25 +240,13 @@ public:
   /// @{
 
   //! finds neighbours, spacing, duplicates and outliers. O(n log n)
-  bool find_neighbors()
-  {
-    return run([&](auto& p) { return m_session->find_neighbors(p); });
-  }
+  bool find_neighbors() { return run(&Session::find_neighbors); }
   //! finds ground, root, shortest paths and the tree of level-set components. O(n log n)
-  bool find_paths()
-  {
-    return run([&](auto& p) { return m_session->find_paths(p); });
-  }
+  bool find_paths() { return run(&Session::find_paths); }
   //! fits the axes and radii of all branches. O(n log n)
-  bool fit_axes()
-  {
-    return run([&](auto& p) { return m_session->fit_axes(p); });
-  }
+  bool fit_axes() { return run(&Session::fit_axes); }
   //! joins the axes to one rooted tree and fits cross-sections. O(axes log axes)
-  bool join()
-  {
-    return run([&](auto& p) { return m_session->join(p); });
-  }
+  bool join() { return run(&Session::join); }
 
   /*!
     Runs the stages that have not run, and writes the result.
@@ -289,28 +272,22 @@ public:
                   "pcs::extract_tree_skeleton(): a graph that is no pcs::Tree_skeleton needs the "
                   "named parameters `node_point_map` and `node_radius_map`");
     if constexpr (is_graph_ok && is_ok && (is_ready_made || has_maps)) {
-      if (!join() || !estimate_spread()) {
+      if (!m_resampled->complete(m_callback)) {
         Skeleton_report report;
         report.status = Status::cancelled;
-        report.number_of_points = m_session->report().number_of_points;
+        report.number_of_points = session().report().number_of_points;
         return report;
       }
-      if (m_session->report().status == Status::converged) {
+      if (session().report().status == Status::converged) {
         if constexpr (is_ready_made)
-          skeleton::write_ready_made(m_session->tree(), m_session->scan().frame, tree);
+          skeleton::write_ready_made(session().tree(), session().scan().frame, tree);
         else
-          skeleton::write_graph(m_session->tree(), m_session->scan().frame, m_np, tree);
+          skeleton::write_graph(session().tree(), session().scan().frame, m_np, tree);
       }
-      write_points();
+      skeleton::write_points(session(), *m_points, m_np);
       if (m_callback)
         m_callback(1);
-      Skeleton_report report = m_session->report();
-      report.spread = m_resamples.spread();
-      report.spread.is_leaf_removal_changed = m_is_leaf_removal_changed;
-      report.spread.is_displaced = m_is_displaced;
-      if (report.spread.number_of_copies > 0)
-        report.spread.fraction = skeleton::resampled_fraction(report.number_of_points);
-      return report;
+      return m_resampled->report();
     } else
       return Skeleton_report();
   }
@@ -321,318 +298,29 @@ public:
   /// Coordinates and lengths are those of `scan().frame`, except for the report, which is in the
   /// unit of the input.
   /// @{
-  const skeleton::Scan& scan() const { return m_session->scan(); }
-  const skeleton::Layer_tree& layers() const { return m_session->layers(); }
-  const skeleton::Axis_set& axes() const { return m_session->axes(); }
-  const std::vector<skeleton::Joint>& joints() const { return m_session->joints(); }
-  const skeleton::Branch_tree& branches() const { return m_session->tree(); }
-  const Skeleton_report& report() const { return m_session->report(); }
+  const skeleton::Scan& scan() const { return session().scan(); }
+  const skeleton::Layer_tree& layers() const { return session().layers(); }
+  const skeleton::Axis_set& axes() const { return session().axes(); }
+  const std::vector<skeleton::Joint>& joints() const { return session().joints(); }
+  const skeleton::Branch_tree& branches() const { return session().tree(); }
+  const Skeleton_report& report() const { return session().report(); }
   /// @}
 
 private:
   static constexpr const char* function = "pcs::extract_tree_skeleton()";
 
-  /// The fraction of the progress at which the stages end if resampled copies follow.
-  static constexpr double end_of_stages = 0.5;
-  /// The fraction at which a second extraction may follow, see `estimate_spread()`.
-  static constexpr double end_of_copies = 0.8, end_of_vote = 0.9;
-
-  template <class Stage>
-  bool run(const Stage& stage)
+  bool run(bool (Session::*stage)(internal::Progress&))
   {
-    std::function<bool(double)> callback = m_callback;
-    if (callback && !m_resamples.is_done())
-      callback = [this](double f) { return m_callback(end_of_stages * f); };
-    internal::Progress progress(std::move(callback));
-    return stage(progress);
+    internal::Progress progress(m_resampled->callback_of_stages(m_callback));
+    return (m_resampled->session().*stage)(progress);
   }
 
-  /// Extracts the skeletons of resampled copies, if there are any. If most of them contradict the
-  /// scan in whether there are leaves, extracts the skeleton of the scan again.
-  bool estimate_spread()
-  {
-    if (m_is_spread_done || m_session->report().status != Status::converged)
-      return true;
-    internal::Progress progress(m_callback);
-    if (!m_resamples.is_done()) {
-      progress.stage(end_of_stages, end_of_copies);
-      if (!m_resamples.run(progress))
-        return false;
-      const Skeleton_report& r = m_session->report();
-      const Leaf_removal vote =
-          m_resamples.vote_on_leaves(r.number_of_leaf_points > 0, r.number_of_points);
-      m_is_leaf_removal_changed = vote != Leaf_removal::where_found;
-      if (m_is_leaf_removal_changed) {
-        m_hints.leaf_removal = vote;
-        m_session = std::make_unique<Session>(read_points(), read_wood(), m_hints);
-      }
-    }
-    progress.stage(end_of_copies, end_of_vote);
-    if (!m_session->join(progress))
-      return false;
-    progress.stage(end_of_vote, 1);
-    m_is_spread_done = choose_typical_skeleton(progress);
-    return m_is_spread_done;
-  }
-
-  /*!
-    If the skeleton of the scan differs from most copies, extracts skeletons of the scan with points
-    displaced by a thousandth of their spacing, and keeps the one that differs least. Decisions that
-    depend on chance are thus made as in most copies.
-  */
-  bool choose_typical_skeleton(internal::Progress& progress)
-  {
-    constexpr std::size_t max_trials = 4;
-    constexpr double displacement = 0.001; // spacings
-    double least = m_resamples.distance_from_copies(*m_session);
-    for (; m_number_of_trials < max_trials && least > 1; ++m_number_of_trials) {
-      if (!m_trial) {
-        std::vector<skeleton::Vec3> points = read_points();
-        skeleton::displace_points(points,
-                                  displacement * m_session->report().spacing,
-                                  m_number_of_trials + 1);
-        m_trial = std::make_unique<Session>(std::move(points), read_wood(), m_hints);
-      }
-      if (!m_trial->join(progress))
-        return false;
-      const double distance = m_resamples.distance_from_copies(*m_trial);
-      if (distance < least) {
-        least = distance;
-        m_session = std::move(m_trial);
-        m_is_displaced = true;
-      }
-      m_trial.reset();
-    }
-    return true;
-  }
-
-  std::vector<skeleton::Vec3> read_points() const
-  {
-    const auto point_map =
-        internal::choose(m_np,
-                         CGAL::internal_np::point_map,
-                         CGAL::Identity_property_map<std::decay_t<typename Types::Element>>());
-    return skeleton::internal::read_input(*m_points, point_map, function);
-  }
-
-  std::vector<std::uint8_t> read_wood() const
-  {
-    std::vector<std::uint8_t> is_wood;
-    if constexpr (internal::is_given_v<NamedParameters, internal_np::wood_map_t>) {
-      const auto map = CGAL::parameters::get_parameter(m_np, internal_np::wood_map);
-      constexpr bool is_map_ok =
-          is_readable_map_v<std::decay_t<decltype(map)>, typename Types::Element, bool>;
-      static_assert(is_map_ok,
-                    "pcs::extract_tree_skeleton(): named parameter `wood_map` must be readable, "
-                    "accept an element of `points` as key, and store bool");
-      std::size_t count = 0;
-      is_wood.reserve(static_cast<std::size_t>(std::end(*m_points) - std::begin(*m_points)));
-      if constexpr (is_map_ok)
-        for (auto it = std::begin(*m_points); it != std::end(*m_points); ++it) {
-          is_wood.push_back(get(map, *it) ? 1 : 0);
-          count += is_wood.back();
-        }
-      internal::check(count >= lowest_number_of_scan_points,
-                      function,
-                      "wood_map leaves " + std::to_string(count) +
-                          " points; there must be at least " +
-                          std::to_string(lowest_number_of_scan_points));
-    }
-    return is_wood;
-  }
-
-  /// Returns the station of each point, or an empty list if no station is known.
-  std::vector<long long> read_stations() const
-  {
-    std::vector<long long> stations;
-    if constexpr (internal::is_given_v<NamedParameters, internal_np::station_map_t>) {
-      const auto map = CGAL::parameters::get_parameter(m_np, internal_np::station_map);
-      using Map = std::decay_t<decltype(map)>;
-      constexpr bool is_map_ok =
-          is_readable_map_v<Map, typename Types::Element, pcs::Map_value<Map>> &&
-          std::is_integral_v<pcs::Map_value<Map>>;
-      static_assert(is_map_ok,
-                    "pcs::extract_tree_skeleton(): named parameter `station_map` must be readable, "
-                    "accept an element of `points` as key, and store an integer type");
-      if constexpr (is_map_ok) {
-        const auto begin = std::begin(*m_points), end = std::end(*m_points);
-        std::size_t i = 0;
-        for (auto it = begin; it != end; ++it, ++i) {
-          const long long label = static_cast<long long>(get(map, *it));
-          if (label >= 0 && stations.empty())
-            stations.assign(static_cast<std::size_t>(end - begin), -1);
-          if (label >= 0)
-            stations[i] = label;
-        }
-      }
-    }
-    return stations;
-  }
-
-  /// Returns the normals of the input if `rules` states that there are any. Null vectors and
-  /// vectors that are not finite are unknown normals.
-  std::vector<skeleton::Vec3> read_normals(const Slice_options& rules) const
-  {
-    std::vector<skeleton::Vec3> normals;
-    if (!rules.has_normals)
-      return normals;
-    constexpr bool is_given = internal::is_given_v<NamedParameters, CGAL::internal_np::normal_t>;
-    bool is_read = false;
-    if constexpr (is_given) {
-      const auto map = CGAL::parameters::get_parameter(m_np, CGAL::internal_np::normal_map);
-      using Map = std::decay_t<decltype(map)>;
-      if constexpr (is_readable_point_map_v<Map, typename Types::Element>) {
-        is_read = true;
-        normals.reserve(static_cast<std::size_t>(std::end(*m_points) - std::begin(*m_points)));
-        for (auto it = std::begin(*m_points); it != std::end(*m_points); ++it)
-          normals.push_back(skeleton::internal::to_vec3(get(map, *it)));
-      }
-    }
-    internal::check(is_read,
-                    function,
-                    "slice_options: `has_normals` needs the named parameter `normal_map` with a "
-                    "readable map");
-    return normals;
-  }
-
-  /// Calls `f(i)` for every input point that is assigned to a branch, concurrently if the tag is
-  /// parallel.
-  template <class F>
-  void for_each_explained(const F& f) const
-  {
-    if (m_session->tree().nodes.empty())
-      return;
-    internal::for_each_index<ConcurrencyTag>(m_session->report().number_of_points,
-                                             [&](std::size_t i) {
-                                               if (m_session->node_of_input(i) != skeleton::none)
-                                                 f(i);
-                                             });
-  }
-
-  /// Calls `f(key, i, node)` for every input point in order; `node` is `none` for points that are
-  /// not assigned to a branch.
-  template <class F>
-  void for_each_point(const F& f) const
-  {
-    const bool has_tree = !m_session->tree().nodes.empty();
-    std::size_t i = 0;
-    for (auto it = std::begin(*m_points); it != std::end(*m_points); ++it, ++i)
-      f(*it, i, has_tree ? m_session->node_of_input(i) : skeleton::none);
-  }
-
-  /// Writes the property maps of the points. The caller's maps are written sequentially.
-  void write_points() const
-  {
-    write_branches();
-    write_residuals();
-    write_leaves();
-    write_normals();
-    write_densities();
-  }
-
-  void write_branches() const
-  {
-    if constexpr (internal::is_given_v<NamedParameters, internal_np::point_branch_map_t>) {
-      const auto map = CGAL::parameters::get_parameter(m_np, internal_np::point_branch_map);
-      using Map = std::decay_t<decltype(map)>;
-      constexpr bool is_map_ok = skeleton::internal::is_index_map_v<Map, typename Types::Element>;
-      static_assert(is_map_ok,
-                    "pcs::extract_tree_skeleton(): named parameter `point_branch_map` must be "
-                    "writable, accept an element of `points` as key, and store an integer type");
-      if constexpr (is_map_ok)
-        for_each_point([&](auto&& key, std::size_t, skeleton::Index v) {
-          const std::size_t branch =
-              v == skeleton::none ? npos : std::size_t(m_session->tree().nodes[v].branch);
-          put(map, key, static_cast<pcs::Map_value<Map>>(branch));
-        });
-    }
-  }
-
-  void write_residuals() const
-  {
-    if constexpr (internal::is_given_v<NamedParameters, internal_np::point_residual_map_t>) {
-      const auto map = CGAL::parameters::get_parameter(m_np, internal_np::point_residual_map);
-      using Map = std::decay_t<decltype(map)>;
-      constexpr bool is_map_ok = skeleton::internal::is_length_map_v<Map, typename Types::Element>;
-      static_assert(is_map_ok,
-                    "pcs::extract_tree_skeleton(): named parameter `point_residual_map` must be "
-                    "writable, accept an element of `points` as key, and store floating point "
-                    "numbers");
-      if constexpr (is_map_ok) {
-        std::vector<double> residuals(m_session->report().number_of_points, 0);
-        for_each_explained([&](std::size_t i) { residuals[i] = m_session->residual_of_input(i); });
-        for_each_point([&](auto&& key, std::size_t i, skeleton::Index) {
-          put(map, key, pcs::Map_value<Map>(residuals[i]));
-        });
-      }
-    }
-  }
-
-  void write_leaves() const
-  {
-    if constexpr (internal::is_given_v<NamedParameters, internal_np::point_is_leaf_map_t>) {
-      const auto map = CGAL::parameters::get_parameter(m_np, internal_np::point_is_leaf_map);
-      constexpr bool is_map_ok =
-          is_map_for_v<std::decay_t<decltype(map)>, typename Types::Element, bool>;
-      static_assert(is_map_ok,
-                    "pcs::extract_tree_skeleton(): named parameter `point_is_leaf_map` must be "
-                    "writable, accept an element of `points` as key, and store bool");
-      if constexpr (is_map_ok)
-        for_each_point([&](auto&& key, std::size_t i, skeleton::Index) {
-          put(map, key, m_session->is_leaf_of_input(i));
-        });
-    }
-  }
-
-  void write_normals() const
-  {
-    if constexpr (internal::is_given_v<NamedParameters, CGAL::internal_np::normal_t>) {
-      const auto map = CGAL::parameters::get_parameter(m_np, CGAL::internal_np::normal_map);
-      using Map = std::decay_t<decltype(map)>;
-      constexpr bool is_map_ok = skeleton::internal::is_vector_map_v<Map, typename Types::Element>;
-      static_assert(is_map_ok,
-                    "pcs::extract_tree_skeleton(): named parameter `normal_map` must be writable, "
-                    "accept an element of `points` as key, and store vectors with x(), y(), z() "
-                    "and a constructor from three coordinates");
-      if constexpr (is_map_ok) {
-        using V = pcs::Map_value<Map>;
-        using FT = std::decay_t<decltype(std::declval<const V&>().x())>;
-        std::vector<skeleton::Vec3> normals(m_session->report().number_of_points,
-                                            skeleton::Vec3::Zero());
-        for_each_explained([&](std::size_t i) { normals[i] = m_session->normal_of_input(i); });
-        for_each_point([&](auto&& key, std::size_t i, skeleton::Index) {
-          const skeleton::Vec3& n = normals[i];
-          put(map, key, V(FT(n.x()), FT(n.y()), FT(n.z())));
-        });
-      }
-    }
-  }
-
-  void write_densities() const
-  {
-    if constexpr (internal::is_given_v<NamedParameters, internal_np::point_is_dense_map_t>) {
-      const auto map = CGAL::parameters::get_parameter(m_np, internal_np::point_is_dense_map);
-      constexpr bool is_map_ok =
-          is_map_for_v<std::decay_t<decltype(map)>, typename Types::Element, bool>;
-      static_assert(is_map_ok,
-                    "pcs::extract_tree_skeleton(): named parameter `point_is_dense_map` must be "
-                    "writable, accept an element of `points` as key, and store bool");
-      if constexpr (is_map_ok)
-        for_each_point([&](auto&& key, std::size_t, skeleton::Index v) {
-          put(map, key, v != skeleton::none && m_session->tree().nodes[v].is_measured);
-        });
-    }
-  }
+  const Session& session() const { return m_resampled->session(); }
 
   const PointRange* m_points;
   NamedParameters m_np;
   std::function<bool(double)> m_callback;
-  std::unique_ptr<Session> m_session;
-  skeleton::Spread_estimator<ConcurrencyTag> m_resamples;
-  skeleton::Session_hints m_hints;
-  std::unique_ptr<Session> m_trial; ///< see `choose_typical_skeleton()`
-  std::size_t m_number_of_trials = 0;
-  bool m_is_leaf_removal_changed = false, m_is_displaced = false, m_is_spread_done = false;
+  std::unique_ptr<Resampled_session> m_resampled;
 };
 
 } // namespace pcs

@@ -41,13 +41,16 @@ set(deformation_upsampling
 
 # ---- skeleton: extract_tree_skeleton, segment_trees
 set(root_skeleton
-  estimate_spread.h
+  Resampled_session.h
   Session.h
   forest/Stand.h
   input/Session_hints.h
   input/caller_types.h
   input/check_input.h
+  input/read_maps.h
   input/read_options.h
+  resampling/resample_scan.h
+  result/write_points.h
   result/write_result.h
   surface/Surface_builder.h)
 set(skeleton_session
@@ -62,6 +65,8 @@ set(skeleton_session
   leaves/separate_leaves.h
   radii/refine_radii.h
   registration/register_stations.h
+  resampling/Copy_descriptors.h
+  resampling/resample_scan.h
   result/describe_tree.h
   scan/Point_labels.h
   scan/measure_coordinate_step.h
@@ -75,6 +80,7 @@ set(skeleton_continuation axes/Axis_fit.h axes/Chain_options.h axes/remove_axes.
 set(skeleton_radii axes/Axis_fit.h axes/Axis_oval.h)
 set(skeleton_leaves graph/Neighbor_graph.h graph/shortest_paths.h)
 set(skeleton_slices layers/cut_layers.h)
+set(skeleton_result Session.h input/caller_types.h)
 set(skeleton_forest
   Session.h
   Session_options.h

@@ -1,0 +1,79 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// A skeletonization whose result is compared with the skeletons of resampled copies of the scan.
+
+#ifndef PCS_SKELETON_RESAMPLED_SESSION_H
+#define PCS_SKELETON_RESAMPLED_SESSION_H
+
+#include <pcs/core/Skeleton_report.h>
+#include <pcs/skeleton/Session.h>
+#include <pcs/skeleton/input/Session_hints.h>
+#include <pcs/skeleton/resampling/Copy_descriptors.h>
+#include <pcs/skeleton/resampling/resample_scan.h>
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+
+namespace pcs {
+namespace skeleton {
+
+/*!
+  The skeletonization of a scan and of random subsets of it.
+
+  The spread of the descriptors among the subsets estimates their standard errors. If the subsets
+  have at least half of the points, two decisions are made by the majority: whether there are
+  leaves, and which of several skeletons is the most typical. Cancelled calls may be repeated; they
+  continue with the interrupted skeleton.
+*/
+template <class ConcurrencyTag>
+class Resampled_session
+{
+public:
+  using Session = skeleton::Session<ConcurrencyTag>;
+
+  /// `scan` is finite, with at least two different points. Stations and normals are read from
+  /// `scan`, not from `hints`.
+  Resampled_session(Scan_points scan, Session_hints hints, std::size_t number_of_resamples);
+
+  /// Returns the session of the scan. Another one may replace it in `complete()`.
+  Session& session() { return *m_session; }
+  const Session& session() const { return *m_session; }
+
+  /// Returns the callback of the stages of `session()`: the part of the progress before the copies.
+  std::function<bool(double)> callback_of_stages(const std::function<bool(double)>& callback) const;
+
+  /// Runs the remaining stages, extracts the skeletons of the copies, and chooses the skeleton.
+  /// Returns `false` if the callback stopped it.
+  bool complete(const std::function<bool(double)>& callback);
+
+  /// Returns the report of the session with the deviations among the copies.
+  Skeleton_report report() const;
+
+private:
+  bool has_copies() const { return m_number_of_copies > 0; }
+  std::unique_ptr<Session> make_session(Scan_points points) const;
+  bool extract_copies(pcs::internal::Progress& progress);
+  void vote_on_leaves();
+  bool choose_typical_skeleton(pcs::internal::Progress& progress);
+  bool are_comparable() const;
+  double distance_from_copies(const Session& session) const;
+
+  Scan_points m_scan;    ///< empty without copies
+  Session_hints m_hints; ///< without stations and normals
+  std::size_t m_number_of_copies = 0, m_number_of_completed_copies = 0;
+  Copy_descriptors m_copies;
+  std::unique_ptr<Session> m_session;
+  std::unique_ptr<Session> m_trial; ///< see `choose_typical_skeleton()`
+  std::size_t m_number_of_trials = 0;
+  bool m_has_voted = false, m_is_leaf_removal_changed = false, m_is_displaced = false;
+};
+
+} // namespace skeleton
+} // namespace pcs
+
+#ifndef PCS_COMPILED_SKELETON
+#include <pcs/skeleton/Resampled_session_impl.h>
+#endif
+
+#endif // PCS_SKELETON_RESAMPLED_SESSION_H

@@ -1,0 +1,197 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Definitions of Resampled_session.h.
+
+#ifndef PCS_SKELETON_RESAMPLED_SESSION_IMPL_H
+#define PCS_SKELETON_RESAMPLED_SESSION_IMPL_H
+
+#include <pcs/internal/progress.h>
+#include <pcs/skeleton/Resampled_session.h>
+#include <pcs/skeleton/Session_impl.h>
+
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <utility>
+
+namespace pcs {
+namespace skeleton {
+
+namespace internal {
+
+/// Fractions of the progress at which the stages, the copies and the vote on leaves end, if there
+/// are copies.
+constexpr double end_of_stages = 0.5, end_of_copies = 0.8, end_of_vote = 0.9;
+
+/// Copies with a smaller fraction of the points are not compared with the scan [-].
+constexpr double least_comparable_fraction = 0.5;
+
+/// Returns the root in the coordinates of the input.
+template <class Tag>
+Vec3 root_of(const Session<Tag>& session)
+{
+  const Branch_tree& tree = session.tree();
+  return session.scan().frame.to_input(tree.nodes[tree.branches.front().nodes.front()].point);
+}
+
+} // namespace internal
+
+template <class ConcurrencyTag>
+Resampled_session<ConcurrencyTag>::Resampled_session(Scan_points scan,
+                                                     Session_hints hints,
+                                                     std::size_t number_of_resamples)
+  : m_hints(std::move(hints))
+{
+  if (scan.positions.size() >= least_resampled_points)
+    m_number_of_copies = number_of_resamples;
+  if (has_copies())
+    m_scan = scan;
+  m_session = make_session(std::move(scan));
+}
+
+template <class ConcurrencyTag>
+std::function<bool(double)> Resampled_session<ConcurrencyTag>::callback_of_stages(
+    const std::function<bool(double)>& callback) const
+{
+  if (!callback || m_number_of_completed_copies == m_number_of_copies)
+    return callback;
+  return [callback](double f) { return callback(internal::end_of_stages * f); };
+}
+
+template <class ConcurrencyTag>
+bool Resampled_session<ConcurrencyTag>::complete(const std::function<bool(double)>& callback)
+{
+  pcs::internal::Progress stages(callback_of_stages(callback));
+  if (!m_session->join(stages))
+    return false;
+  if (!has_copies() || m_session->report().status != Status::converged)
+    return true;
+  pcs::internal::Progress progress(callback);
+  progress.stage(internal::end_of_stages, internal::end_of_copies);
+  if (!extract_copies(progress))
+    return false;
+  vote_on_leaves();
+  progress.stage(internal::end_of_copies, internal::end_of_vote);
+  if (!m_session->join(progress))
+    return false;
+  progress.stage(internal::end_of_vote, 1);
+  return choose_typical_skeleton(progress);
+}
+
+template <class ConcurrencyTag>
+Skeleton_report Resampled_session<ConcurrencyTag>::report() const
+{
+  Skeleton_report report = m_session->report();
+  report.spread = m_copies.spread();
+  report.spread.number_of_empty_copies =
+      m_number_of_completed_copies - report.spread.number_of_copies;
+  report.spread.is_leaf_removal_changed = m_is_leaf_removal_changed;
+  report.spread.is_displaced = m_is_displaced;
+  if (report.spread.number_of_copies > 0)
+    report.spread.fraction = resampled_fraction(report.number_of_points);
+  return report;
+}
+
+template <class ConcurrencyTag>
+std::unique_ptr<Session<ConcurrencyTag>>
+Resampled_session<ConcurrencyTag>::make_session(Scan_points points) const
+{
+  Session_hints hints = m_hints;
+  hints.stations = std::move(points.stations);
+  hints.normals = std::move(points.normals);
+  return std::make_unique<Session>(std::move(points.positions),
+                                   std::move(points.is_wood),
+                                   std::move(hints));
+}
+
+/// Extracts the remaining skeletons of the copies.
+template <class ConcurrencyTag>
+bool Resampled_session<ConcurrencyTag>::extract_copies(pcs::internal::Progress& progress)
+{
+  const auto count = double(m_number_of_copies);
+  for (; m_number_of_completed_copies < m_number_of_copies; ++m_number_of_completed_copies) {
+    pcs::internal::Progress part(
+        [&](double f) { return progress((double(m_number_of_completed_copies) + f) / count); });
+    const std::unique_ptr<Session> session =
+        make_session(resample_scan(m_scan, m_number_of_completed_copies));
+    if (!session->join(part))
+      return false;
+    if (session->report().status == Status::converged)
+      m_copies.add(session->report(), internal::root_of(*session));
+  }
+  return true;
+}
+
+/// If most copies contradict the scan in whether there are leaves, starts the session again.
+template <class ConcurrencyTag>
+void Resampled_session<ConcurrencyTag>::vote_on_leaves()
+{
+  if (m_has_voted || m_hints.leaf_removal != Leaf_removal::where_found || !are_comparable())
+    return;
+  m_has_voted = true;
+  const Leaf_removal vote = majority_on_leaves(m_copies.height.size(),
+                                               m_copies.number_of_leafy_copies,
+                                               m_session->report().number_of_leaf_points > 0);
+  if (vote == Leaf_removal::where_found)
+    return;
+  m_is_leaf_removal_changed = true;
+  m_hints.leaf_removal = vote;
+  m_session = make_session(m_scan);
+}
+
+/*!
+  If the skeleton of the scan differs from most copies, extracts skeletons of the scan with points
+  displaced by a thousandth of their spacing, and keeps the one that differs least. Decisions that
+  depend on chance are thus made as in most copies.
+*/
+template <class ConcurrencyTag>
+bool Resampled_session<ConcurrencyTag>::choose_typical_skeleton(pcs::internal::Progress& progress)
+{
+  constexpr std::size_t max_trials = 4;
+  constexpr double displacement = 0.001; // spacings
+  double least = distance_from_copies(*m_session);
+  for (; m_number_of_trials < max_trials && least > 1; ++m_number_of_trials) {
+    if (!m_trial) {
+      Scan_points points = m_scan;
+      displace_points(points.positions,
+                      displacement * m_session->report().spacing,
+                      m_number_of_trials + 1);
+      m_trial = make_session(std::move(points));
+    }
+    if (!m_trial->join(progress))
+      return false;
+    const double distance = distance_from_copies(*m_trial);
+    if (distance < least) {
+      least = distance;
+      m_session = std::move(m_trial);
+      m_is_displaced = true;
+    }
+    m_trial.reset();
+  }
+  return true;
+}
+
+/// Returns whether the copies have enough points to be compared with the scan. Leaves, for example,
+/// are not recognized in thinned scans.
+template <class ConcurrencyTag>
+bool Resampled_session<ConcurrencyTag>::are_comparable() const
+{
+  return resampled_fraction(m_scan.positions.size()) >= internal::least_comparable_fraction;
+}
+
+/// Returns how untypical a skeleton is of the copies: the largest difference from the medians, 1 if
+/// the difference is just tolerable [-]. 0 if the copies are not comparable.
+template <class ConcurrencyTag>
+double Resampled_session<ConcurrencyTag>::distance_from_copies(const Session& session) const
+{
+  const Skeleton_report& r = session.report();
+  if (r.status != Status::converged)
+    return std::numeric_limits<double>::infinity();
+  return are_comparable() ? m_copies.distance_from_medians(r, internal::root_of(session)) : 0;
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_RESAMPLED_SESSION_IMPL_H

@@ -1,0 +1,121 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Descriptors of the skeletons of resampled copies: deviations, medians, and the vote on leaves.
+
+#ifndef PCS_SKELETON_RESAMPLING_COPY_DESCRIPTORS_H
+#define PCS_SKELETON_RESAMPLING_COPY_DESCRIPTORS_H
+
+#include <pcs/core/Skeleton_options.h>
+#include <pcs/core/Skeleton_report.h>
+#include <pcs/internal/median.h>
+#include <pcs/skeleton/model/Scan.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// Returns the sample standard deviation.
+inline double deviation(const std::vector<double>& values)
+{
+  const auto n = double(values.size());
+  double mean = 0, square = 0;
+  for (const double v : values)
+    mean += v / n;
+  for (const double v : values)
+    square += (v - mean) * (v - mean);
+  return n > 1 ? std::sqrt(square / (n - 1)) : 0;
+}
+
+/// The descriptors of the copies that have a tree.
+struct Copy_descriptors
+{
+  std::vector<double> height, diameter, trunk, length, volume, trunk_volume;
+  std::vector<std::vector<double>> by_size;
+  std::vector<double> root[3];
+  std::size_t number_of_leafy_copies = 0;
+
+  void add(const Skeleton_report& r, const Vec3& root_position)
+  {
+    number_of_leafy_copies += r.number_of_leaf_points > 0;
+    height.push_back(r.height);
+    diameter.push_back(r.diameter_at_breast_height);
+    trunk.push_back(r.by_order.empty() ? 0 : r.by_order.front().length);
+    length.push_back(r.total.length);
+    volume.push_back(r.total.volume);
+    trunk_volume.push_back(r.by_order.empty() ? 0 : r.by_order.front().volume);
+    by_size.resize(r.by_size.size());
+    for (std::size_t k = 0; k < by_size.size(); ++k)
+      by_size[k].push_back(r.by_size[k].volume);
+    for (int k = 0; k < 3; ++k)
+      root[k].push_back(root_position[k]);
+  }
+
+  /*!
+    Returns how far the descriptors of a skeleton are from the medians of the copies and this
+    skeleton: the largest difference in units of 1 % of the height, 2 % of the diameter at breast
+    height, 5 % of the length of the trunk, 5 % of the volume, or 4 % of the breast height for the
+    position of the root [-]. 0 without copies.
+  */
+  double distance_from_medians(const Skeleton_report& r, const Vec3& root_position) const
+  {
+    if (height.empty())
+      return 0;
+    double largest = 0;
+    const auto compare = [&](std::vector<double> values, double value, double unit) {
+      values.push_back(value);
+      const double difference = std::abs(value - pcs::internal::lower_median(values));
+      if (difference > 0)
+        largest = std::max(largest, difference / unit);
+    };
+    const double trunk_length = r.by_order.empty() ? 0 : r.by_order.front().length;
+    compare(height, r.height, 0.01 * r.height);
+    compare(diameter, r.diameter_at_breast_height, 0.02 * r.diameter_at_breast_height);
+    compare(trunk, trunk_length, 0.05 * trunk_length);
+    compare(volume, r.total.volume, 0.05 * r.total.volume);
+    for (int k = 0; k < 3; ++k)
+      compare(root[k], root_position[k], 0.04 * r.breast_height);
+    return largest;
+  }
+
+  Skeleton_spread spread() const
+  {
+    Skeleton_spread result;
+    result.number_of_copies = height.size();
+    result.number_of_leafy_copies = number_of_leafy_copies;
+    result.height = deviation(height);
+    result.diameter_at_breast_height = deviation(diameter);
+    result.trunk_length = deviation(trunk);
+    result.length = deviation(length);
+    result.volume = deviation(volume);
+    result.trunk_volume = deviation(trunk_volume);
+    for (const std::vector<double>& volumes : by_size)
+      result.volume_by_size.push_back(deviation(volumes));
+    result.root = std::hypot(deviation(root[0]), deviation(root[1]), deviation(root[2]));
+    return result;
+  }
+};
+
+/*!
+  Returns how leaves are to be treated according to a vote of a scan and its copies: `always` or
+  `never` if the majority contradicts the scan, otherwise `where_found`.
+  \param has_leaves whether leaves were found in the scan
+*/
+inline Leaf_removal majority_on_leaves(std::size_t number_of_copies,
+                                       std::size_t number_of_leafy_copies,
+                                       bool has_leaves)
+{
+  const std::size_t opposed =
+      has_leaves ? number_of_copies - number_of_leafy_copies : number_of_leafy_copies;
+  if (2 * opposed <= number_of_copies + 1)
+    return Leaf_removal::where_found;
+  return has_leaves ? Leaf_removal::never : Leaf_removal::always;
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_RESAMPLING_COPY_DESCRIPTORS_H
