@@ -298,10 +298,31 @@ BOOST_AUTO_TEST_CASE(points_without_faces_are_points)
   BOOST_TEST(glb.largest_distance(corners) < 5e-7);
 }
 
-BOOST_AUTO_TEST_CASE(empty_meshes_are_refused)
+BOOST_AUTO_TEST_CASE(an_empty_mesh_is_an_empty_scene)
 {
-  const std::vector<Point_3> none;
-  refuses<IO_error>([&] { pcs::IO::write_mesh(path("a.glb"), none, {}); }, "without triangles");
+  pcs::IO::write_mesh(path("a.glb"), std::vector<Point_3>(), {});
+  const std::string file = content("a.glb");
+  const auto number = [&](std::size_t at) {
+    return pcs::IO::internal::load<std::uint32_t>(
+        reinterpret_cast<const unsigned char*>(file.data()) + at,
+        pcs::IO::internal::is_big_endian_machine());
+  };
+  BOOST_TEST_REQUIRE(file.size() > 20u);
+  BOOST_TEST(file.substr(0, 4) == "glTF");
+  BOOST_TEST(number(8) == file.size());
+  BOOST_TEST(number(12) == file.size() - 20);
+  BOOST_TEST(file.size() % 4 == 0u);
+  BOOST_TEST(file.substr(16, 4) == "JSON");
+  std::istringstream text(file.substr(20));
+  Json json;
+  boost::property_tree::read_json(text, json);
+  BOOST_TEST(json.get<std::string>("asset.version") == "2.0");
+  BOOST_TEST(json.get_child("scenes").size() == 1u);
+  BOOST_TEST(json.count("meshes") == 0u);
+}
+
+BOOST_AUTO_TEST_CASE(vertices_without_triangles_are_refused)
+{
   refuses<IO_error>([&] { pcs::IO::write_mesh(path("a.glb"), corners, {}); }, "write PLY or OBJ");
   refuses<IO_error>([&] { pcs::IO::write_points(path("a.glb"), Point_table()); }, "write PLY");
   Write_options options;

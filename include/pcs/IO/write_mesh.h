@@ -50,8 +50,8 @@ inline void check_mesh_size(const std::string& path,
                        std::to_string(most_vertices) + "; write OBJ");
   if (extension != "glb")
     return;
-  if (number_of_points == 0 || number_of_triangles == 0)
-    throw IO_error(path, "glTF cannot hold a mesh without triangles; write PLY or OBJ");
+  if (number_of_points > 0 && number_of_triangles == 0)
+    throw IO_error(path, "glTF cannot hold vertices without triangles; write PLY or OBJ");
   if (Glb_file::size_of_file({}, number_of_points, number_of_triangles) >
       double(Glb_file::largest_size))
     throw IO_error(path,
@@ -110,6 +110,8 @@ write_obj_mesh(Output_file& file, const Mesh_points& points, const Mesh_triangle
 inline void
 write_glb_mesh(Output_file& file, const Mesh_points& points, const Mesh_triangles& triangles)
 {
+  if (points.empty())
+    return write_empty_glb(file);
   Glb_file glb(file, {}, center_of_box(points.size(), [&](std::size_t i, std::size_t axis) {
                  return points[i][axis];
                }));
@@ -132,15 +134,15 @@ write_glb_mesh(Output_file& file, const Mesh_points& points, const Mesh_triangle
 
   PLY is binary, with coordinates in double precision. `.glb` is binary glTF 2.0: coordinates are
   stored as `float` relative to the center of the mesh, and a node moves them to their place. The
-  node also rotates them, because glTF is y-up: the point (x, y, z) is at (x, z, -y). The file is
-  written completely or not at all.
+  node also rotates them, because glTF is y-up: the point (x, y, z) is at (x, z, -y). An empty mesh
+  is an empty scene. The file is written completely or not at all.
 
   \param path name of the file
   \param points `n` positions, of which 3 coordinates are written [L]
   \param triangles indices of points, each below `n`
   \throws pcs::IO_error when the file cannot be written or has another extension, or when the format
-          cannot hold the mesh: more than 2^32 points in PLY, more than 4 GiB or no triangles in
-          glTF
+          cannot hold the mesh: more than 2^32 points in PLY, more than 4 GiB, or points without
+          triangles, in glTF
   \throws pcs::Invalid_input when a coordinate is not finite or an index is not below `n`
   \par Complexity
   Linear; a copy of the positions is in memory.

@@ -211,6 +211,20 @@ private:
   std::array<float, 3> m_high = {-infinity, -infinity, -infinity};
 };
 
+//! writes a glTF file with an empty scene, since meshes of glTF have at least one vertex
+inline void write_empty_glb(Output_file& file)
+{
+  std::string json = "{\"asset\":{\"version\":\"2.0\",\"generator\":\"pcs\"},\"scene\":0,"
+                     "\"scenes\":[{\"name\":\"empty\"}]}";
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  std::array<unsigned char, 20> head{'g', 'l', 'T', 'F', 2, 0, 0, 0};
+  store_little(head, 8, static_cast<std::uint32_t>(head.size() + json.size()));
+  store_little(head, 12, static_cast<std::uint32_t>(json.size()));
+  std::copy_n("JSON", 4, head.begin() + 16);
+  file.write(head.data(), head.size());
+  file.write(json);
+}
+
 //! returns the center of the bounding box of positions, which has the coordinates `get(i, axis)`
 template <class Get>
 std::array<double, 3> center_of_box(std::size_t n, const Get& get)
