@@ -28,6 +28,7 @@ using pcs_test::append;
 using pcs_test::check_is_a_tree;
 using pcs_test::cylinder;
 using pcs_test::Jitter;
+using pcs_test::sheet;
 using pcs_test::Tree;
 using Kernel = pcs_test::Tree_kernel;
 using Point = pcs_test::Tree_point;
@@ -35,20 +36,6 @@ using Vector = pcs_test::Tree_vector;
 using Cloud = std::vector<Point>;
 
 namespace {
-
-/// `n` points of a rectangle that is upright on the middle of its lower side, or horizontal if `up`
-/// is horizontal.
-Cloud sheet(std::size_t n, double width, const Vector& across, const Vector& up, double noise)
-{
-  std::mt19937 random(5);
-  std::uniform_real_distribution<double> share(-0.5, 0.5);
-  Cloud points;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double a = share(random), b = share(random);
-    points.push_back(CGAL::ORIGIN + width * a * across + width * b * up);
-  }
-  return Jitter(noise)(points);
-}
 
 /// The branches of the result by number of points, for the points of one body.
 std::map<std::size_t, std::size_t>
@@ -480,133 +467,6 @@ BOOST_AUTO_TEST_CASE(crossing_sticks_stay_apart)
   for (const auto& [name, count] : votes(branch, 0, n))
     mixed += name == pcs::npos ? 0 : std::min(count, votes(branch, n, 2 * n)[name]);
   BOOST_CHECK_LT(mixed, n * 2 / 100);
-}
-
-BOOST_AUTO_TEST_CASE(ground_is_left_out)
-{
-  Cloud points = cylinder(8000, 0.1, 3);
-  for (int i = 0; i < 100; ++i)
-    for (int j = 0; j < 100; ++j)
-      points.emplace_back(-1 + 0.02 * i + 0.001 * (j % 3), -1 + 0.02 * j, 0.01 * std::sin(0.3 * i));
-  Tree tree;
-  const auto report = pcs::extract_tree_skeleton(points, tree);
-  BOOST_CHECK_GT(report.number_of_ground_points, 7000u);
-  BOOST_CHECK_LE(report.number_of_branches, 5u);
-  BOOST_CHECK_CLOSE(report.diameter_at_breast_height, 0.2, 3.0);
-}
-
-// Relief and slopes rise above the foot, and ground points have a larger spacing than tree points.
-BOOST_AUTO_TEST_CASE(ground_is_followed_up_slopes)
-{
-  Tree bare, tree;
-  const Cloud& wood = pcs_test::small_scan().scan.points;
-  const auto expected = pcs::extract_tree_skeleton(wood, bare);
-  for (const double slope : {0.0, 0.15, 0.6}) {
-    Cloud points = wood;
-    for (int i = -90; i <= 90; ++i)
-      for (int j = -90; j <= 90; ++j) {
-        const double x = 0.03 * i, y = 0.03 * j;
-        points.emplace_back(x, y, slope * x + 0.15 * std::sin(2 * x) * std::sin(2 * y));
-      }
-    const auto report = pcs::extract_tree_skeleton(points, tree);
-    BOOST_TEST(double(report.number_of_ground_points) > 0.97 * double(points.size() - wood.size()));
-    BOOST_CHECK_CLOSE(report.total.length, expected.total.length, 10.0);
-    BOOST_CHECK_CLOSE(report.total.volume, expected.total.volume, 15.0);
-    BOOST_CHECK_CLOSE(report.spacing, expected.spacing, 5.0);
-  }
-}
-
-BOOST_AUTO_TEST_CASE(grass_goes_with_the_ground)
-{
-  std::mt19937 random(4);
-  std::uniform_real_distribution<double> place(-2, 2), share(0, 1);
-  Cloud points = cylinder(8000, 0.05, 4);
-  append(points, sheet(40000, 4, Vector(1, 0, 0), Vector(0, 1, 0), 0.01));
-  for (int blade = 0; blade < 1500; ++blade) {
-    const double x = place(random), y = place(random), height = 0.1 + 0.2 * share(random);
-    for (int k = 0; k < 12; ++k)
-      points.emplace_back(x, y, height * share(random));
-  }
-  Tree tree;
-  const auto report = pcs::extract_tree_skeleton(points, tree);
-  BOOST_TEST(report.number_of_ground_points > 54000u);
-  BOOST_TEST(report.total.length < 5);
-  BOOST_CHECK_CLOSE(report.height, 4, 3.0);
-}
-
-BOOST_AUTO_TEST_CASE(a_log_on_the_ground_is_told_from_it)
-{
-  Cloud points;
-  for (const Point& p : cylinder(12000, 0.2, 5, Point(-2.5, 0, 0.15), Vector(1, 0, 0)))
-    if (p.z() > 0)
-      points.push_back(p);
-  for (const Point& p : sheet(40000, 8, Vector(1, 0, 0), Vector(0, 1, 0), 0.005))
-    if (std::abs(p.x()) > 2.5 || std::abs(p.y()) > 0.15)
-      points.push_back(p);
-  Tree tree;
-  const auto report = pcs::extract_tree_skeleton(points, tree);
-  BOOST_CHECK_EQUAL(report.status, pcs::Status::converged);
-  BOOST_TEST(report.number_of_ground_points > 38000u);
-  BOOST_CHECK_CLOSE(report.total.length, 5, 5.0);
-  BOOST_CHECK_CLOSE(report.total.volume, CGAL_PI * 0.04 * 5, 15.0);
-}
-
-// Nearly all of the points lie in a thin sheet.
-BOOST_AUTO_TEST_CASE(a_tree_on_wide_ground_is_no_sheet)
-{
-  Cloud points = cylinder(300, 0.15, 9);
-  append(points, sheet(60000, 40, Vector(1, 0, 0), Vector(0, 1, 0), 0.01));
-  Tree tree;
-  const auto report = pcs::extract_tree_skeleton(points, tree);
-  BOOST_CHECK_EQUAL(report.status, pcs::Status::converged);
-  BOOST_TEST(report.number_of_ground_points > 55000u);
-  BOOST_CHECK_CLOSE(report.height, 9, 5.0);
-}
-
-BOOST_AUTO_TEST_CASE(shrubs_on_the_ground_are_no_trunk)
-{
-  std::mt19937 random(9);
-  std::uniform_real_distribution<double> place(-1.8, 1.8), share(0, 1);
-  Cloud points = cylinder(8000, 0.1, 3);
-  append(points, sheet(20000, 4, Vector(1, 0, 0), Vector(0, 1, 0), 0.01));
-  for (int k = 0; k < 15; ++k) {
-    const Point foot(place(random), place(random), 0);
-    if ((foot - CGAL::ORIGIN).squared_length() < 0.25)
-      continue;
-    for (int stem = 0; stem < 6; ++stem) {
-      const double azimuth = 2 * CGAL_PI * share(random), tilt = 0.1 + 0.6 * share(random);
-      append(points,
-             cylinder(120,
-                      0.004,
-                      0.5,
-                      foot,
-                      Vector(std::sin(tilt) * std::cos(azimuth),
-                             std::sin(tilt) * std::sin(azimuth),
-                             std::cos(tilt))));
-    }
-  }
-  Tree tree;
-  const auto report = pcs::extract_tree_skeleton(points, tree);
-  check_is_a_tree(tree);
-  BOOST_CHECK_GT(report.number_of_ground_points, 15000u);
-  BOOST_CHECK_CLOSE(report.height, 3.0, 3.0);
-  BOOST_CHECK_CLOSE(report.diameter_at_breast_height, 0.2, 3.0);
-}
-
-// A roof alone has the shape of a terrain, with a short piece of the stem below it.
-BOOST_AUTO_TEST_CASE(a_roof_is_no_ground)
-{
-  Cloud points = cylinder(6000, 0.15, 9, Point(-1.5, 0, 0));
-  const Vector y(0, 1, 0);
-  for (const Point& p : sheet(60000, 6, Vector(1, 0, 0), 1.5 * y, 0.003))
-    points.push_back(p + Vector(3, 0, 3));
-  for (const Point& p : sheet(40000, 3, Vector(0, 0, 1), 3 * y, 0.003))
-    points.push_back(p + Vector(0, 0, 1.5));
-  Tree tree;
-  const auto report = pcs::extract_tree_skeleton(points, tree);
-  BOOST_CHECK_EQUAL(report.number_of_ground_points, 0u);
-  BOOST_TEST(report.number_of_wall_points > 99000u);
-  BOOST_CHECK_CLOSE(report.height, 9, 1.0);
 }
 
 BOOST_AUTO_TEST_CASE(a_trunk_too_thin_for_its_height_is_named)

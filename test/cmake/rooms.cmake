@@ -73,7 +73,7 @@ set(skeleton_session
   scan/prepare_scan.h
   scan/thin_dense_points.h
   slices/section_skeleton.h)
-set(skeleton_clutter graph/Neighbor_graph.h scan/Point_labels.h)
+set(skeleton_clutter graph/Neighbor_graph.h layers/Stem_foot.h scan/Point_labels.h)
 set(skeleton_layers graph/Neighbor_graph.h graph/shortest_paths.h)
 set(skeleton_axes graph/Neighbor_graph.h layers/cut_layers.h)
 set(skeleton_continuation axes/Axis_fit.h axes/Chain_options.h axes/remove_axes.h)

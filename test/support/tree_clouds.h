@@ -96,6 +96,21 @@ private:
   std::normal_distribution<double> m_normal;
 };
 
+/// `n` points of a rectangle that is upright on the middle of its lower side, or horizontal if `up`
+/// is horizontal.
+inline std::vector<Tree_point>
+sheet(std::size_t n, double width, const Tree_vector& across, const Tree_vector& up, double noise)
+{
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> share(-0.5, 0.5);
+  std::vector<Tree_point> points;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double a = share(random), b = share(random);
+    points.push_back(CGAL::ORIGIN + width * a * across + width * b * up);
+  }
+  return Jitter(noise)(points);
+}
+
 /// Describes the violated invariant of a skeleton; empty if it is valid. Checks one root, one
 /// parent of all other nodes, finite numbers, and branches that contain every node once.
 inline std::string fault_of(const Tree& tree)

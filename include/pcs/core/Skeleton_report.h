@@ -135,6 +135,7 @@ struct Skeleton_report
   double height = 0;
   //! height of the root above the lowest points of the tree, leaves included [L]
   double root_elevation = 0;
+  bool is_root_given = false;   ///< whether `root_position` was given
   double max_root_distance = 0; ///< from the root to the farthest node [L]
   //! diameter of the thickest stem at breast height, from a line fitted to its radii between 1.1
   //! and 1.5 m to reduce the effect of bark and noise; 0: the tree is lower [L]
@@ -264,8 +265,11 @@ inline void warn_of_stems(const Skeleton_report& r, std::vector<std::string>& se
   constexpr double max_elevation = 0.1; // root elevation / height above the lowest points [-]
   if (r.root_elevation > max_elevation * (r.root_elevation + r.height))
     sentences.push_back("the root is " + short_text(r.root_elevation) +
-                        " above the lowest points: the foot of the tree may be missing from the "
-                        "result (root_position selects the foot)");
+                        (r.is_root_given
+                             ? " above the lowest points: points below the given root_position "
+                               "are not part of the result"
+                             : " above the lowest points: the foot of the tree may be missing "
+                               "from the result (root_position selects the foot)"));
   if (r.stem_diameters.size() > 1) {
     std::string list;
     for (const double d : r.stem_diameters)

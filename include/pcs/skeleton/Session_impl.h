@@ -39,6 +39,7 @@ Session<ConcurrencyTag>::Session(std::vector<Vec3> input,
   m_state->input = std::move(input);
   m_state->is_wood = std::move(is_wood);
   m_state->report.method = options.method;
+  m_state->report.is_root_given = options.root.has_value();
   m_state->options = std::move(options);
 }
 

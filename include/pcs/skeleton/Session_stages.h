@@ -160,14 +160,25 @@ Links used_links(const Session_state<Tag>& s)
   return neighbor_links<Tag>(s.scan, s.is_used(), s.options.axes.links);
 }
 
-/// Builds the graph of the used points, and finds the root unless `do_keep_root`.
+/// What is known about the root before the neighbour graph is built.
+enum class Known_root { none, foot_on_ground, points };
+
+/// Builds the graph of the used points, and finds the root unless its points are known.
 template <class Tag>
-void link_used(Session_state<Tag>& s, const Links& links, bool do_keep_root, Linked_parts& linked)
+void link_used(Session_state<Tag>& s, const Links& links, Known_root known, Linked_parts& linked)
 {
   const Session_options& o = s.options;
   const auto find_root = [&](const Point_parts& parts) {
-    if (!do_keep_root)
-      s.root = points_of_root<Tag>(s.scan, s.is_used(), links, parts, root_hint(s), o.up, o.layers);
+    if (known != Known_root::points)
+      s.root =
+          points_of_root<Tag>(s.scan,
+                              s.is_used(),
+                              links,
+                              parts,
+                              root_hint(s),
+                              known == Known_root::foot_on_ground ? s.clutter.foot() : std::nullopt,
+                              o.up,
+                              o.layers);
   };
   link_parts<Tag>(s.scan, s.is_used(), links, o.axes.links, find_root, linked);
 }
@@ -186,18 +197,18 @@ bool remove_ground(Session_state<Tag>& s,
                    Linked_parts& linked,
                    pcs::internal::Progress& progress)
 {
-  const auto link = [&] {
+  const auto link = [&](Known_root known) {
     if (s.options.do_trace_paths)
-      link_used(s, links, false, linked);
+      link_used(s, links, known, linked);
   };
   if (s.options.do_mark_ground) // links meanwhile, since most scans have no ground
-    s.clutter.mark_ground(links, s.options.up, link);
+    s.clutter.mark_ground(links, s.options.up, [&] { link(Known_root::none); });
   else
-    link();
+    link(Known_root::none);
   if (!progress(end_of_clutter))
     return false;
   if (s.clutter.remove_ground_and_faces([&] { return used_links(s); }, links))
-    link();
+    link(Known_root::foot_on_ground);
   return true;
 }
 
@@ -276,7 +287,7 @@ bool remove_leaves(Session_state<Tag>& s)
   s.labels.remove_leaves(is_wood);
   Links links = used_links(s);
   Linked_parts linked;
-  link_used(s, links, true, linked);
+  link_used(s, links, Known_root::points, linked);
   trace_layers(s, links, linked);
   ++s.leaves.rounds; // after a cancellation, the work continues with the wood
   return true;

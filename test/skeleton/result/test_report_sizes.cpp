@@ -135,7 +135,9 @@ BOOST_AUTO_TEST_CASE(implausible_results_say_so)
   report.root_elevation = 1;
   BOOST_TEST(pcs::warnings(report).empty()); // occlusion of a tenth is usual on slopes
   report.root_elevation = 4.6;
-  BOOST_TEST(warns_of(report, "the root is 4.6 above the lowest points"));
+  BOOST_TEST(warns_of(report, "the root is 4.6 above the lowest points: the foot"));
+  report.is_root_given = true;
+  BOOST_TEST(warns_of(report, "points below the given root_position are not part"));
   report = plausible_tree();
   report.stem_diameters = {0.2, 0.15};
   BOOST_TEST(warns_of(report, "2 stems with diameters of 0.2, 0.15"));

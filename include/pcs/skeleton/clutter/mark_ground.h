@@ -9,6 +9,7 @@
 #include <pcs/skeleton/clutter/Terrain.h>
 #include <pcs/skeleton/clutter/is_single_sheet.h>
 #include <pcs/skeleton/graph/Neighbor_graph.h>
+#include <pcs/skeleton/layers/Stem_foot.h>
 #include <pcs/skeleton/model/Scan.h>
 
 #include <Eigen/Core>
@@ -167,36 +168,30 @@ inline Bin_extent extent_of(const Scan& scan, const std::vector<Index>& points, 
   return e;
 }
 
-/// Position where the stem of a tree leaves the ground.
-struct Stem_foot
+/// Finds the position where the stem of a tree leaves the ground; no value if there is no stem in
+/// the bins. `stem` contains the points of the stem in each bin.
+inline std::optional<Stem_foot>
+find_foot(const Scan& scan, const std::vector<std::vector<Index>>& stem, const Vec3& up)
 {
-  Vec3 center = Vec3::Zero();
-  double width = 0; ///< lower quartile of the root mean square widths of the bins [L]
-
-  /// Finds the foot; no value if there is no stem in the bins.
-  static std::optional<Stem_foot>
-  find(const Scan& scan, const std::vector<std::vector<Index>>& stem, const Vec3& up)
-  {
-    std::vector<Bin_extent> extent;
-    std::vector<double> widths;
-    for (const auto& points : stem) {
-      extent.push_back(extent_of(scan, points, up));
-      if (extent.back().count >= 6)
-        widths.push_back(extent.back().width);
-    }
-    if (widths.size() < 4)
-      return std::nullopt;
-    std::sort(widths.begin(), widths.end());
-    Stem_foot foot;
-    foot.width = widths[widths.size() / 4];
-    for (const Bin_extent& bin : extent)
-      if (bin.count >= 6 && bin.width <= 1.5 * foot.width) { // lowest bin of the stem alone
-        foot.center = bin.center;
-        return foot;
-      }
-    return std::nullopt;
+  std::vector<Bin_extent> extent;
+  std::vector<double> widths;
+  for (const auto& points : stem) {
+    extent.push_back(extent_of(scan, points, up));
+    if (extent.back().count >= 6)
+      widths.push_back(extent.back().width);
   }
-};
+  if (widths.size() < 4)
+    return std::nullopt;
+  std::sort(widths.begin(), widths.end());
+  Stem_foot foot;
+  foot.width = widths[widths.size() / 4];
+  for (const Bin_extent& bin : extent)
+    if (bin.count >= 6 && bin.width <= 1.5 * foot.width) { // lowest bin of the stem alone
+      foot.center = bin.center;
+      return foot;
+    }
+  return std::nullopt;
+}
 
 /// Detector of ground points: the points of a terrain and of plants on it.
 class Ground_finder
@@ -214,6 +209,8 @@ public:
   }
 
   const std::vector<Index>& points() const { return m_points; }
+  /// Returns the foot of the stem on the ground; no value if there is no ground or no stem.
+  const std::optional<Stem_foot>& foot() const { return m_foot; }
 
 private:
   double across(Index i, const Stem_foot& foot) const
@@ -283,7 +280,7 @@ private:
         links.push_back(l);
     const Low_bins bins(m_scan, height, m_rules, is_standing);
     const auto foot =
-        Stem_foot::find(m_scan, stem_in_bins(m_scan, links, height, is_standing, bins), m_up);
+        find_foot(m_scan, stem_in_bins(m_scan, links, height, is_standing, bins), m_up);
     if (!foot) { // such as a lying stem
       const auto standing = std::count(is_standing.begin(), is_standing.end(), 1);
       if (double(standing) >= m_rules.lying * double(layer.size()))
@@ -292,6 +289,7 @@ private:
     }
     if (!is_wide(*foot, layer))
       return;
+    m_foot = foot;
     m_points = far_from(*foot, layer);
     add_plants(bins, links, *foot);
     terrain.bridge(foot->center, kept(*foot));
@@ -334,27 +332,35 @@ private:
   const Ground_options& m_rules;
   const std::vector<std::uint8_t>& m_is_used;
   std::vector<Index> m_points;
+  std::optional<Stem_foot> m_foot;
 };
 
 } // namespace internal
 
+/// The ground of a scan.
+struct Ground
+{
+  std::size_t number_of_points = 0;
+  std::optional<Stem_foot> foot; ///< of the tree that stands on it
+};
+
 /*!
-  Removes ground from `is_used`, and returns the number of its points. Ground is a terrain below all
-  other points. It is a filled patch much wider than the stem, or an object lies on it. Plants that
-  cover it are removed, too. `links`: links between neighbours. O(n log n).
+  Removes ground from `is_used`. Ground is a terrain below all other points. It is a filled patch
+  much wider than the stem, or an object lies on it. Plants that cover it are removed, too. `links`:
+  links between neighbours. O(n log n).
 */
-inline std::size_t mark_ground(const Scan& scan,
-                               const Links& links,
-                               const Vec3& up,
-                               const Ground_options& rules,
-                               std::vector<std::uint8_t>& is_used)
+inline Ground mark_ground(const Scan& scan,
+                          const Links& links,
+                          const Vec3& up,
+                          const Ground_options& rules,
+                          std::vector<std::uint8_t>& is_used)
 {
   if (std::count(is_used.begin(), is_used.end(), 1) < 200)
-    return 0;
+    return Ground();
   const internal::Ground_finder ground(scan, links, up, rules, is_used);
   for (const Index i : ground.points())
     is_used[i] = 0;
-  return ground.points().size();
+  return {ground.points().size(), ground.foot()};
 }
 
 } // namespace skeleton

@@ -11,11 +11,12 @@
 #include <pcs/skeleton/clutter/is_single_sheet.h>
 #include <pcs/skeleton/clutter/mark_ground.h>
 #include <pcs/skeleton/graph/Neighbor_graph.h>
+#include <pcs/skeleton/layers/Stem_foot.h>
 #include <pcs/skeleton/model/Scan.h>
 #include <pcs/skeleton/scan/Point_labels.h>
 
-#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -72,11 +73,10 @@ public:
   void mark_ground(const Links& links, const Vec3& up, const Meanwhile& meanwhile)
   {
     m_is_above_ground = m_labels.flags();
-    m_number_of_ground_points = 0;
+    m_ground = Ground();
     pcs::internal::invoke_both<ConcurrencyTag>(
         [&] {
-          m_number_of_ground_points =
-              skeleton::mark_ground(m_scan, links, up, m_options.ground, m_is_above_ground);
+          m_ground = skeleton::mark_ground(m_scan, links, up, m_options.ground, m_is_above_ground);
         },
         meanwhile);
   }
@@ -86,8 +86,8 @@ public:
   template <class FindLinks>
   bool remove_ground_and_faces(const FindLinks& find_links, Links& links)
   {
-    m_report.number_of_ground_points = m_number_of_ground_points;
-    const bool has_ground = m_number_of_ground_points > 0;
+    m_report.number_of_ground_points = m_ground.number_of_points;
+    const bool has_ground = m_ground.number_of_points > 0;
     if (has_ground) {
       m_labels.keep_only(std::move(m_is_above_ground));
       links = find_links();
@@ -95,6 +95,9 @@ public:
     const bool may_have_faces = m_walls.has_faces() || has_ground; // otherwise, nothing has changed
     return (may_have_faces && m_walls.leave_out_rest(find_links, links)) || has_ground;
   }
+
+  /// Returns the foot of the tree on the removed ground; no value without ground.
+  const std::optional<Stem_foot>& foot() const { return m_ground.foot; }
 
 private:
   const Clutter_options& m_options;
@@ -104,7 +107,7 @@ private:
   Wall_removal<ConcurrencyTag> m_walls;
   bool m_are_walls_removed = false;
   Flags m_is_above_ground;
-  std::size_t m_number_of_ground_points = 0;
+  Ground m_ground;
 };
 
 } // namespace skeleton

@@ -7,6 +7,7 @@
 
 #include <pcs/skeleton/graph/Neighbor_graph.h>
 #include <pcs/skeleton/graph/shortest_paths.h>
+#include <pcs/skeleton/layers/Stem_foot.h>
 #include <pcs/skeleton/model/Layer_tree.h>
 #include <pcs/skeleton/model/Scan.h>
 #include <pcs/skeleton/model/Slab_shape.h>
@@ -21,6 +22,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -43,7 +45,8 @@ struct Root_options
   double band = 0.4; ///< height of the root points, in half widths of the stem [-]
   //! largest spread of a stem at a given root; wider sections are crowns. In extents [-]
   double widest_hinted = 0.1;
-  double rival = 0.03; ///< least number of points of another stem, relative to the first [-]
+  double foot_widths = 2; ///< radius of the foot on the ground, in widths of the stem [-]
+  double rival = 0.03;    ///< least number of points of another stem, relative to the first [-]
   double smallest_component =
       0.05; ///< least fraction of all points in a component that may contain the root [-]
   //! the same for an upright component, such as a stem below an occlusion [-]
@@ -199,6 +202,27 @@ public:
     return Stem(m_scan, m_up, slab, m_parts, near_parts, near_parts.part[seed], m_rules);
   }
 
+  /// Returns the stem at a foot: the connected points that are at the foot according to
+  /// `is_at_foot(position)`, and at most a slab above it. No value without such points.
+  template <class IsAtFoot>
+  std::optional<Stem> at_foot(const Stem_foot& foot, const IsAtFoot& is_at_foot) const
+  {
+    const double slab = height_of_slab(m_rules.slab);
+    const double top = m_up.dot(foot.center) + slab;
+    std::vector<std::uint8_t> is_near(m_scan.size(), 0);
+    for (Index i = 0; i < m_scan.size(); ++i)
+      is_near[i] = m_parts.part[i] != none && m_height[i] <= top && is_at_foot(m_scan.points[i]);
+    const Index seed = m_scan.search
+                           ->nearest_if(foot.center,
+                                        std::numeric_limits<double>::max(),
+                                        [&](Index i) { return is_near[i] != 0; })
+                           .index;
+    if (!is_near[seed])
+      return std::nullopt;
+    const Point_parts near_parts = connected_parts<ConcurrencyTag>(is_near, m_links);
+    return Stem(m_scan, m_up, slab, m_parts, near_parts, near_parts.part[seed], m_rules);
+  }
+
   Stem operator()() const
   {
     Stem stem = within(m_rules.slab);
@@ -343,6 +367,33 @@ private:
 
 } // namespace internal
 
+namespace internal {
+
+/// Returns the lowest points of a stem, or the points of one end of a lying stem.
+inline std::vector<Index> lowest_points(const Scan& scan,
+                                        const std::vector<double>& height,
+                                        Stem stem,
+                                        const Root_options& rules)
+{
+  // the band includes the whole circumference of a thick stem, so that level sets are not tilted;
+  // the band of a lying stem is one of its ends
+  const double spread = stem.is_lying ? stem.shape.width : stem.spread();
+  const double band = std::max(layer_thickness * scan.spacing, rules.band * spread);
+  const auto place = [&](Index i) {
+    return stem.is_lying ? stem.shape.along.dot(scan.points[i]) : height[i];
+  };
+  std::vector<Index>& root = stem.points;
+  double foot = std::numeric_limits<double>::infinity();
+  for (const Index i : root)
+    foot = std::min(foot, place(i));
+  root.erase(
+      std::remove_if(root.begin(), root.end(), [&](Index i) { return place(i) > foot + band; }),
+      root.end());
+  return std::move(root);
+}
+
+} // namespace internal
+
 /*!
   Returns the lowest points of the stem at the lower end of a large connected component. Stems with
   many points and stems of tall components take precedence. For a lying stem or a flat cloud,
@@ -359,22 +410,33 @@ std::vector<Index> find_root(const Scan& scan,
                              const Root_options& rules)
 {
   const internal::Stem_search<ConcurrencyTag> search(scan, is_used, links, parts, up, rules);
-  internal::Stem stem = search();
-  // the band includes the whole circumference of a thick stem, so that level sets are not tilted;
-  // the band of a lying stem is one of its ends
-  const double spread = stem.is_lying ? stem.shape.width : stem.spread();
-  const double band = std::max(layer_thickness * scan.spacing, rules.band * spread);
-  const auto place = [&](Index i) {
-    return stem.is_lying ? stem.shape.along.dot(scan.points[i]) : search.height()[i];
+  return internal::lowest_points(scan, search.height(), search(), rules);
+}
+
+/*!
+  Returns the lowest points of the stem whose foot on the ground is known: the result of
+  `find_root()` if it is at the foot, otherwise the connected points around and below the foot.
+*/
+template <class ConcurrencyTag>
+std::vector<Index> find_root_at(const Stem_foot& foot,
+                                const Scan& scan,
+                                const std::vector<std::uint8_t>& is_used,
+                                const Links& links,
+                                const Point_parts& parts,
+                                const Vec3& up,
+                                const Root_options& rules)
+{
+  const internal::Stem_search<ConcurrencyTag> search(scan, is_used, links, parts, up, rules);
+  const double reach = rules.foot_widths * foot.width + rules.slab_spacings * scan.spacing;
+  const auto is_at_foot = [&](const Vec3& p) {
+    return (p - foot.center).cross(up).norm() <= reach;
   };
-  std::vector<Index>& root = stem.points;
-  double foot = std::numeric_limits<double>::infinity();
-  for (const Index i : root)
-    foot = std::min(foot, place(i));
-  root.erase(
-      std::remove_if(root.begin(), root.end(), [&](Index i) { return place(i) > foot + band; }),
-      root.end());
-  return std::move(root);
+  internal::Stem stem = search();
+  if (!is_at_foot(stem.shape.mean)) {
+    if (std::optional<internal::Stem> other = search.at_foot(foot, is_at_foot))
+      stem = std::move(*other);
+  }
+  return internal::lowest_points(scan, search.height(), std::move(stem), rules);
 }
 
 /*!

@@ -31,19 +31,23 @@ struct Layer_options
 };
 
 /// Returns the points of the root: those of `find_root_near()` for a `hint` (in coordinates of the
-/// scan), otherwise those of `find_root()`.
+/// scan), those of `find_root_at()` for a `foot`, otherwise those of `find_root()`.
 template <class ConcurrencyTag>
 std::vector<Index> points_of_root(const Scan& scan,
                                   const std::vector<std::uint8_t>& is_used,
                                   const Links& links,
                                   const Point_parts& parts,
                                   const std::optional<Vec3>& hint,
+                                  const std::optional<Stem_foot>& foot,
                                   const Vec3& up,
                                   const Layer_options& options)
 {
-  return hint
-             ? find_root_near<ConcurrencyTag>(*hint, scan, is_used, links, parts, up, options.roots)
-             : find_root<ConcurrencyTag>(scan, is_used, links, parts, up, options.roots);
+  const Root_options& rules = options.roots;
+  if (hint)
+    return find_root_near<ConcurrencyTag>(*hint, scan, is_used, links, parts, up, rules);
+  if (foot)
+    return find_root_at<ConcurrencyTag>(*foot, scan, is_used, links, parts, up, rules);
+  return find_root<ConcurrencyTag>(scan, is_used, links, parts, up, rules);
 }
 
 /*!
