@@ -83,8 +83,8 @@ std::vector<long long> read_stations(const PointRange& points, const NamedParame
   return stations;
 }
 
-/// Reads the normals of the input from `normal_map` if `rules` states that there are any. Null vectors and
-/// vectors that are not finite are unknown normals.
+/// Reads the normals of the input from `normal_map` if `rules` states that there are any. Null
+/// vectors and vectors that are not finite are unknown normals.
 template <class PointRange, class NamedParameters>
 std::vector<Vec3> read_normals(const PointRange& points,
                                const NamedParameters& np,
