@@ -22,7 +22,7 @@ struct Splat
 {
   Eigen::Vector3d center;
   pcs::splats::Splat_shape shape; // rotation and logarithms of the scales
-  float colors[9];                // bands 1 of red, green and blue
+  float colors[9];                // band 1 of red, of green and of blue
 };
 
 struct Center_map

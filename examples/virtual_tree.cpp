@@ -33,7 +33,7 @@ int main()
   double sum = 0;
   std::size_t n = 0;
   for (std::size_t i = 0; i < scan.points.size(); ++i)
-    if (scan.node[i] >= 0) { // neither ghost nor outlier
+    if (scan.node[i] >= 0) { // on the surface of a branch
       const auto& node = tree[static_cast<std::size_t>(scan.node[i])];
       sum += std::sqrt(CGAL::squared_distance(scan.points[i], node.point)) / node.radius;
       ++n;

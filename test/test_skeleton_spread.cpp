@@ -286,7 +286,9 @@ BOOST_AUTO_TEST_CASE(the_distance_from_the_copies_is_in_tolerances)
 
 BOOST_AUTO_TEST_CASE(displacements_are_bounded_and_depend_on_the_seed)
 {
-  const std::vector<pcs::skeleton::Vec3> points(50, pcs::skeleton::Vec3(1, 2, 3));
+  std::vector<pcs::skeleton::Vec3> points;
+  for (int i = 0; i < 50; ++i)
+    points.emplace_back(i, 2, 3);
   auto a = points, b = points, c = points;
   pcs::skeleton::displace_points(a, 0.01, 1);
   pcs::skeleton::displace_points(b, 0.01, 1);
@@ -294,10 +296,40 @@ BOOST_AUTO_TEST_CASE(displacements_are_bounded_and_depend_on_the_seed)
   BOOST_TEST((a == b));
   BOOST_TEST((a != c));
   double largest = 0;
-  for (const auto& p : a)
-    largest = std::max(largest, (p - points.front()).cwiseAbs().maxCoeff());
+  for (std::size_t i = 0; i < a.size(); ++i)
+    largest = std::max(largest, (a[i] - points[i]).cwiseAbs().maxCoeff());
   BOOST_TEST(largest <= 0.01);
   BOOST_TEST(largest > 0.005);
+}
+
+BOOST_AUTO_TEST_CASE(equal_points_are_displaced_equally)
+{
+  std::vector<pcs::skeleton::Vec3> points = {{0, 1, 2}, {-0.0, 1, 2}, {0, 1, 2}, {2, 1, 0}};
+  pcs::skeleton::displace_points(points, 0.01, 1);
+  BOOST_TEST((points[0] == points[1]));
+  BOOST_TEST((points[0] == points[2]));
+  BOOST_TEST(
+      (points[0] - pcs::skeleton::Vec3(0, 1, 2) != points[3] - pcs::skeleton::Vec3(2, 1, 0)));
+}
+
+BOOST_AUTO_TEST_CASE(a_displaced_scan_has_the_rounding_and_duplicates_of_the_input)
+{
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  Cloud points;
+  const auto rounded = [&](double scale) { return std::round(64 * scale * uniform(random)) / 64; };
+  for (int i = 0; i < 1500; ++i) {
+    const double x = rounded(1), y = rounded(1), z = rounded(4);
+    points.emplace_back(x, y, z);
+  }
+  points.insert(points.end(), points.begin(), points.begin() + 100);
+  Tree tree;
+  const auto plain = pcs::extract_tree_skeleton(points, tree);
+  const auto report = pcs::extract_tree_skeleton(points, tree, np::number_of_resamples(4));
+  BOOST_TEST_REQUIRE(report.spread.is_displaced);
+  BOOST_TEST(plain.coordinate_step == 1.0 / 64);
+  BOOST_TEST(report.coordinate_step == plain.coordinate_step);
+  BOOST_TEST(report.number_of_duplicates == plain.number_of_duplicates);
 }
 
 BOOST_AUTO_TEST_CASE(an_untypical_skeleton_is_replaced)

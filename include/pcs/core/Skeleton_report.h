@@ -50,15 +50,16 @@ struct Scan_station
   \ingroup PkgPcsSkeletonRef
   \brief standard deviations of a skeleton among resampled copies of its scan.
 
-  See `number_of_resamples` of `Tree_skeletonization`. Copies of large scans are thinned, so the
-  deviations tend to be overestimated for them; `standard_errors()` takes this into account.
+  See `number_of_resamples` of `Tree_skeletonization`. Copies of small scans share most of their
+  points, so the deviations are too small; copies of large scans are thinned, so they tend to be too
+  large. `standard_errors()` takes both into account.
 */
 struct Skeleton_spread
 {
   std::size_t number_of_copies = 0;       ///< copies with a tree; 0: not estimated [count]
   std::size_t number_of_empty_copies = 0; ///< copies without a tree [count]
   std::size_t number_of_leafy_copies = 0; ///< copies with a tree from which leaves were removed
-  //! whether most of the copies contradicted the scan in whether there are leaves, so that the
+  //! whether the scan and its copies outvoted the scan on whether there are leaves, so that the
   //! skeleton was extracted again with their decision
   bool is_leaf_removal_changed = false;
   //! whether the skeleton is that of points displaced by a thousandth of the spacing, because the

@@ -35,7 +35,7 @@ Orl_report build_space_from(const Orl_correspondences& stored,
 template <class ConcurrencyTag>
 Orl_correspondences store_correspondences(const Space_state& state);
 
-/// Returns a built space as numbers.
+/// Returns the data of a built space, from which `restore_space()` reconstructs it.
 template <class ConcurrencyTag>
 Orl_space_data store_space(const Space_state& state);
 

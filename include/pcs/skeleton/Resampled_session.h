@@ -21,10 +21,10 @@ namespace skeleton {
 /*!
   The skeletonization of a scan and of random subsets of it.
 
-  The spread of the descriptors among the subsets estimates their standard errors. If the subsets
-  have at least half of the points, two decisions are made by the majority: whether there are
-  leaves, and which of several skeletons is the most typical. Cancelled calls may be repeated; they
-  continue with the interrupted skeleton.
+  The deviations among the subsets, called copies, are the basis of `standard_errors()`. If the
+  copies have at least half of the points, the majority of the scan and the copies decides whether
+  there are leaves, and a skeleton that is far from the medians of the copies is replaced by a more
+  typical one. Cancelled calls may be repeated; they continue with the interrupted skeleton.
 */
 template <class ConcurrencyTag>
 class Resampled_session
@@ -40,7 +40,8 @@ public:
   Session& session() { return *m_session; }
   const Session& session() const { return *m_session; }
 
-  /// Returns the callback of the stages of `session()`: the part of the progress before the copies.
+  /// Returns a callback for the stages of `session()`, whose progress ends where that of the copies
+  /// begins.
   std::function<bool(double)> callback_of_stages(const std::function<bool(double)>& callback) const;
 
   /// Runs the remaining stages, extracts the skeletons of the copies, and chooses the skeleton.
@@ -66,6 +67,8 @@ private:
   std::unique_ptr<Session> m_session;
   std::unique_ptr<Session> m_trial; ///< see `choose_typical_skeleton()`
   std::size_t m_number_of_trials = 0;
+  double m_coordinate_step = 0; ///< of the scan before displacement, like the next [L]
+  bool m_is_single_precision = false;
   bool m_has_voted = false, m_is_leaf_removal_changed = false, m_is_displaced = false;
 };
 

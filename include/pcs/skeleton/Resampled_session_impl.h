@@ -88,6 +88,10 @@ Skeleton_report Resampled_session<ConcurrencyTag>::report() const
       m_number_of_completed_copies - report.spread.number_of_copies;
   report.spread.is_leaf_removal_changed = m_is_leaf_removal_changed;
   report.spread.is_displaced = m_is_displaced;
+  if (m_is_displaced) { // displaced coordinates are not rounded
+    report.coordinate_step = m_coordinate_step;
+    report.is_single_precision = m_is_single_precision;
+  }
   if (report.spread.number_of_copies > 0)
     report.spread.fraction = resampled_fraction(report.number_of_points);
   return report;
@@ -123,7 +127,8 @@ bool Resampled_session<ConcurrencyTag>::extract_copies(pcs::internal::Progress& 
   return true;
 }
 
-/// If most copies contradict the scan in whether there are leaves, starts the session again.
+/// If the scan and its copies outvote the scan on whether there are leaves, starts the session
+/// again with their decision.
 template <class ConcurrencyTag>
 void Resampled_session<ConcurrencyTag>::vote_on_leaves()
 {
@@ -141,15 +146,20 @@ void Resampled_session<ConcurrencyTag>::vote_on_leaves()
 }
 
 /*!
-  If the skeleton of the scan differs from most copies, extracts skeletons of the scan with points
-  displaced by a thousandth of their spacing, and keeps the one that differs least. Decisions that
-  depend on chance are thus made as in most copies.
+  If the skeleton of the scan is far from the medians of the copies, extracts up to four skeletons
+  of the scan whose coordinates are displaced by at most a thousandth of the spacing, until one is
+  close enough, and keeps the closest of all. Decisions that depend on chance are thus made as in
+  most copies.
 */
 template <class ConcurrencyTag>
 bool Resampled_session<ConcurrencyTag>::choose_typical_skeleton(pcs::internal::Progress& progress)
 {
   constexpr std::size_t max_trials = 4;
   constexpr double displacement = 0.001; // spacings
+  if (!m_is_displaced) {
+    m_coordinate_step = m_session->report().coordinate_step;
+    m_is_single_precision = m_session->report().is_single_precision;
+  }
   double least = distance_from_copies(*m_session);
   for (; m_number_of_trials < max_trials && least > 1; ++m_number_of_trials) {
     if (!m_trial) {
@@ -180,8 +190,8 @@ bool Resampled_session<ConcurrencyTag>::are_comparable() const
   return resampled_fraction(m_scan.positions.size()) >= internal::least_comparable_fraction;
 }
 
-/// Returns how untypical a skeleton is of the copies: the largest difference from the medians, 1 if
-/// the difference is just tolerable [-]. 0 if the copies are not comparable.
+/// Returns the distance of a skeleton from the medians of the copies, see `Copy_descriptors`; above
+/// 1, it is too large [-]. Infinite without a tree, 0 if the copies are not comparable.
 template <class ConcurrencyTag>
 double Resampled_session<ConcurrencyTag>::distance_from_copies(const Session& session) const
 {

@@ -65,7 +65,7 @@ public:
   /// Returns whether an input point is a leaf, by the caller or by the leaf-wood separation.
   bool is_leaf_of_input(std::size_t i) const;
 
-  /// Returns the data of all stages, which Session_impl.h defines.
+  /// Returns the data of all stages, which Session_state.h defines.
   Session_state<ConcurrencyTag>& state() { return *m_state; }
 
 private:

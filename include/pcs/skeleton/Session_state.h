@@ -25,20 +25,22 @@ template <class ConcurrencyTag>
 struct Session_state
 {
   // ---- the task
-  std::vector<Vec3> input;           ///< empty after the first stage
+  std::vector<Vec3> input;           ///< empty once it was moved to `scan`
   std::vector<std::uint8_t> is_wood; ///< of the input; empty: unknown
-  Session_options options;           ///< in coordinates of the scan after the first stage
+  //! after `Stage::neighbors`, `up`, `breast_height` and `scanners` are in coordinates of the scan;
+  //! `root` and `given` remain in those of the input
+  Session_options options;
 
   // ---- progress
   Stage stage = Stage::input;
   Leaf_state leaves;  ///< completed rounds of the leaf-wood separation
-  Joined_axes joined; ///< completed rounds of regrouping, joints and branches
+  Joined_axes joined; ///< number of completed regroupings; joints and branches (a result)
 
   // ---- results, in the order of the stages
   Skeleton_report report;
   Scan scan;
   Point_labels<ConcurrencyTag> labels{scan, report};
-  std::vector<std::uint8_t> may_be_tree; ///< for a given skeleton: the labels before any removal
+  std::vector<std::uint8_t> may_be_tree; ///< for a given skeleton: the used points before removals
   Clutter_removal<ConcurrencyTag> clutter{scan, options.clutter, labels, report};
   std::vector<Index> root;
   Shortest_paths paths;

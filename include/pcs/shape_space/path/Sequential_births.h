@@ -23,9 +23,10 @@ struct Sequential_births_buffers
 /*!
   Changes the lengths of branches that exist at only one end of a path.
 
-  Tips move evenly from the birth of their branch to the end of the path. In any part of the path,
-  the same total length grows as if all branches were born together. So the path has constant speed
-  in `Orl_metric::sum`, where it is one of the shortest paths: no length ever decreases.
+  Tips move evenly from the birth of their branch to the end of the path. In every part of the
+  path, the total length grows by the same amount as if all branches were born together. So the path
+  has constant speed in `Orl_metric::sum`, where it is one of the shortest paths: no length both
+  grows and decreases.
 */
 class Sequential_births
 {
@@ -35,8 +36,8 @@ public:
   {
   }
 
-  /// Changes `x`, the tree at `t` in [0, 1] on the path from `a` to `b`. The time is linear in the
-  /// number of edges, and for each of a few dozen search steps in the number of branches.
+  /// Changes `x`, the tree at `t` in [0, 1] on the path from `a` to `b`. O(edges + steps *
+  /// branches), with a few Newton steps.
   void operator()(const Orl_coordinates& a, const Orl_coordinates& b, double t, Orl_coordinates& x)
   {
     grow(a, b, t, x);
@@ -93,7 +94,7 @@ private:
     }
   }
 
-  /// Returns the time until the end of the path when the wanted length has grown. The grown length
+  /// Returns how much of the path remains when the length `wanted` has grown. The grown length
   /// is a convex, piecewise linear, decreasing function of this time, so Newton steps from 0 never
   /// overshoot and end on the right piece.
   double rest_of_time(double wanted, double total) const

@@ -50,8 +50,9 @@ public:
         m_branch_of[layout.branches[b].first_edge + j] = b;
   }
 
-  /// Finds pairs, sorted by edge. `is_stopped(done)` is called between batches of windows; the
-  /// result is empty if it returns `true`.
+  /// Finds pairs, sorted by edge. A window is a set of points of adjacent edges of a branch,
+  /// matched as one transport problem. `is_stopped(done)` is called before batches of windows with
+  /// the fraction of windows done; the result is empty if it returns `true`.
   template <class IsStopped>
   std::vector<Point_pair>
   run(const Transport_options& options, Transport_summary& summary, const IsStopped& is_stopped)
@@ -172,8 +173,8 @@ private:
     return windows;
   }
 
-  /// Cuts a long edge across into windows, each with about the same fraction of the points of both
-  /// trees. Points at equal heights stay together.
+  /// Cuts an edge with many points into windows along its axis, each with about the same fraction
+  /// of the points of both trees. Points at equal heights stay together.
   std::vector<Window> cut(std::size_t e, const Transport_options& options) const
   {
     struct Height
@@ -240,8 +241,8 @@ private:
         }
         return {};
       }
-    // points of tree 1 are mapped to tree 2 by their edges: rotated, stretched along and across,
-    // and moved; points of blades also within their sections
+    // points of the first tree are mapped to the second by their edges: rotated, stretched along
+    // and across, and moved; points of flat edges, such as leaf blades, also within their sections
     std::vector<Vec3> one, two;
     for (const Placed& p : window.point[0]) {
       const std::size_t b = m_branch_of[p.edge];

@@ -98,7 +98,8 @@ struct Chain_options
   std::size_t lowest_count = 2;         ///< least number of points of an axis [count]
   int narrowing = 5;                    ///< iterations in which wide weights narrow [count]
   int fewest = 3, most_iterations = 40; ///< bounds on the iterations of a fit [count]
-  double settled = 0.3;                 ///< largest change at which a fit ends, in noise [-]
+  //! largest change at which a fit ends, in units of the noise [-]
+  double settled = 0.3;
   int full_iterations = 2; ///< final iterations with more points; none with wide weights [count]
   std::size_t enough = 16,
               full_enough = 256; ///< points per node in first and in final iterations [count]

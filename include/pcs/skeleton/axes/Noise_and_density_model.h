@@ -43,12 +43,13 @@ public:
   /// Estimates the noise from `deviations` alone; 0 if they are too few [L].
   double noise_of(std::vector<double> deviations) const
   {
-    // standard deviation from the median of |e|
+    // the standard deviation of a normal distribution from its median absolute deviation
     return deviations.size() >= enough_deviations
                ? std::max(m_least_noise, 1.4826 * pcs::internal::lower_median(deviations))
                : 0;
   }
-  /// Updates the noise, density and fields of `set` if there are enough new samples.
+  /// Updates the noise and density of `set` if there are enough samples and some are new, and the
+  /// fields if their number has grown by half.
   void learn(Axis_set& set)
   {
     if (m_deviations.size() >= enough_deviations && m_deviations.size() != m_learned_deviations) {
@@ -87,8 +88,8 @@ private:
   static constexpr std::size_t capacity = 40000, enough_deviations = 100, enough_densities = 8,
                                enough_thick = 600, enough_facing = 100;
   static constexpr double field_growth = 1.5; ///< growth of samples that triggers a refit [-]
-  static constexpr double thick_radius =
-      6; ///< radius, in noise, above which the fitted radius and the density are unbiased [-]
+  //! radius in units of the noise above which the fitted radius and the density are unbiased [-]
+  static constexpr double thick_radius = 6;
   double m_least_noise;
   std::vector<double> m_deviations;
   std::vector<Density_sample> m_densities;

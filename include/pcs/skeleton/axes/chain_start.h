@@ -55,8 +55,8 @@ make_line(const Chain_view& view, const Layer_tree& tree, const Chain& chain, Ch
   std::fill(start.place.begin(), start.place.end(), 0);
 }
 
-/// Smooths the centers of ragged level-set components, and extends both ends by half the thickness
-/// of a level set.
+/// Smooths the centers, since level-set components are ragged, and extends both ends by half the
+/// thickness of a level set.
 inline void smooth_centers(double spacing, Axis& axis)
 {
   for (int pass = 0; pass < 2; ++pass) {
@@ -95,7 +95,8 @@ inline void guess_radii(const Scan& scan, Chain_start& start)
 
 } // namespace internal
 
-/// Initializes the fit of a chain: smoothed centers of its level-set components, with first radii.
+/// Initializes the fit of a chain: smoothed centers of the points of its level-set components that
+/// no axis explains, with initial radii.
 inline Chain_start start_of(const Chain_view& view, const Layer_tree& tree, const Chain& chain)
 {
   Chain_start start;

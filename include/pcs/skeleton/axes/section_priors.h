@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: BSL-1.0
 // Priors of radii and positions of sections: point counts, widths, visibility and taper.
 //
-// A node of radius r [L] gets a radius q [L] with the deviation d [L], and a center with the
-// deviation g [L]. Axis_fit.h minimises the squared differences from them with the weights 1 / d^2
-// and 1 / g^2 [1/L^2]. Named factors are those of Chain_options; u is the spacing [L], s the noise
-// [L], N the number of points near the surface from two nodes before to two nodes behind [count].
+// The prior of the radius of a node with the fitted radius r [L] has the mean q [L] and the
+// standard deviation d [L], the prior of its center the standard deviation g [L]. Axis_fit.h
+// minimises the squared differences from them with the weights 1 / d^2 and 1 / g^2 [1/L^2]. Named
+// factors are those of Chain_options; u is the spacing [L], s the noise [L], N the number of points
+// near the surface from two nodes before to two nodes behind [count].
 //
 // - Counting, where the point density D [1/L^2] is known and the visible length V [L] of these
 //   nodes exceeds `visible` times their length: the radius of a cylinder with N visible points,
@@ -13,14 +14,14 @@
 //     q = F N / (2 pi D V),   d = prior_share r' + prior_offset u.
 //
 //   With M = prior_ratio q, r' is r up to M and max(q, M^2 / r) beyond. F is 1 unless
-//   r < blurred s; then it is exp(n / (n + hidden_nodes) median ln(r / q_1)), clamped to
-//   [1, most_hidden], over the n such nodes with points, q_1 being q for F = 1.
+//   r < blurred s; then it is exp(n / (n + hidden_nodes) m), clamped to [1, most_hidden].
+//   Here, m is the median of ln(r / q_1) over the n such nodes with points, and q_1 is q for F = 1.
 // - Taper, where no density is known, at the distance z [L] from the base:
 //
-//     q = B (1 - (1 - taper_to) z / L),   d = taper_share B max(1, N / taper_count)
+//     q = B (1 - (1 - taper_to) z / H),   d = taper_share B max(1, N / taper_count)
 //
-//   if z > taper_from L and r > q. B < thick u is the median radius near the base, L the length
-//   [L].
+//   if z > taper_from H and r > q. B < thick u is the median radius near the base, and H [L] is the
+//   length of the chain.
 // - Width, for one-sided sections with r < width_radius u:
 //
 //     q = sqrt(3) W,   d = width_share q + width_noise s
@@ -28,8 +29,8 @@
 //   with the standard deviation W [L] of the points perpendicular to the axis and to their mean
 //   normal: positions across the beams of a scanner are uniform over a diameter. This prior is
 //   combined with one of the above: 1 / d^2 = sum_j 1 / d_j^2 and q = d^2 sum_j q_j / d_j^2.
-// - Center, for r < thick u: the mean of the points is expected at r f from the center, with the
-//   mean normal f [-] of the visibility field of deviation v [-], and
+// - Center, for r < thick u: the mean of the points is expected at r f from the center, where
+//   the visibility field predicts the mean normal f [-] with the deviation v [-], and
 //
 //     g = facing_share v r + facing_noise s.
 
@@ -60,7 +61,8 @@ inline bool is_blurred(const Chain_view& view, double radius)
 }
 
 /*!
-  Returns the prior of a radius `counted` [L] given the fitted radius `found` [L]. Errors of counts
+  Returns the prior of a radius: the value `counted` from point counts [L], with a deviation that
+  follows from the fitted radius `found` [L]. Errors of counts
   are multiplicative, so that the deviation scales with the fitted radius. If the count is far below
   its expected value, the axis probably lies between several twigs. The deviation is then smaller,
   so that the radius does not count as measured.

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// One-sided visibility of sections: view direction, and bounds on position and radius.
+// One-sided visibility of sections: mean normals, and priors of center and radius.
 
 #ifndef PCS_SKELETON_AXES_SECTION_VISIBILITY_H
 #define PCS_SKELETON_AXES_SECTION_VISIBILITY_H
@@ -20,13 +20,14 @@
 namespace pcs {
 namespace skeleton {
 
-/// Sums over the points near the surface, in a window of nodes about each node.
+/// Number and means of the points near the surface, in a window of nodes about each node.
 struct Section_visibility
 {
   std::vector<double> count;
-  std::vector<Vec3> offset;            ///< mean vector from the axis to its points [L]
-  std::vector<Vec3> normal;            ///< mean of the outward normals of the points
-  std::vector<Eigen::Matrix3d> moment; ///< second moments of the offsets, of thin axes only [L^2]
+  std::vector<Vec3> offset; ///< mean vector from the axis to its points [L]
+  std::vector<Vec3> normal; ///< mean of the outward normals of the points
+  //! second moments of the offsets, near thin sections only [L^2]
+  std::vector<Eigen::Matrix3d> moment;
 
   Section_visibility(const Chain_view& view, const Axis_fit& fit)
     : count(fit.axis().size(), 0),
@@ -36,7 +37,7 @@ struct Section_visibility
   {
     const Axis& axis = fit.axis();
     const std::size_t n = axis.size();
-    // second moments are costly, and computed only for the thin sections of `add_width_priors()`
+    // second moments are costly, and computed only near the thin sections of `add_width_priors()`
     std::vector<char> is_thin(n, false);
     for (std::size_t k = 0; k < n; ++k)
       if (axis[k].radius < view.rules.width_radius * view.scan.spacing)
@@ -106,9 +107,9 @@ private:
 };
 
 /*!
-  Returns priors of the centers of thin sections from the side on which their points lie. The points
-  of a thin branch with one-sided visibility fit axes in front of, within and behind them nearly
-  equally well. The visible side is known from thick branches.
+  Returns priors of the centers of thin sections: their points are expected on the visible side,
+  which is known from thick branches. Otherwise, the points of a thin branch with one-sided
+  visibility fit axes in front of, within and behind them nearly equally well.
 */
 inline std::vector<Center_prior>
 center_priors(const Chain_view& view, const Axis& axis, const Section_visibility& sides)

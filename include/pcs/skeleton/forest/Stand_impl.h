@@ -36,8 +36,8 @@ struct Stand_state
   Scan_frame frame;
   std::vector<Found_stem> stems; ///< grouped by tree; in coordinates of `frame`
   std::vector<Index> tree_of_input, stem_of_input;
-  std::vector<float>
-      spacing_of_input; ///< of the thinned points, relative to the median of trees [-]
+  //! of the thinned points, relative to the median of the points of trees [-]
+  std::vector<float> spacing_of_input;
 };
 
 /// Returns the points of a scan that are left after the removal of clutter. If no ground was found,

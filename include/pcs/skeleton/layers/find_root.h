@@ -29,34 +29,41 @@
 namespace pcs {
 namespace skeleton {
 
-/// Options of the root search. A stem is a connected set of points near the lower end of the scan.
-/// The trunk is the stem with the most points, unless another stem has a larger catchment.
+/// Options of the root search. A stem is a connected set of points near the lower end of its
+/// connected component. The trunk is the stem with the largest product of its number of points and
+/// the height of its component. A stem with more than twice its catchment replaces it, unless the
+/// first is a much larger ring.
 struct Root_options
 {
   double slab = 0.03;       ///< height of the searched slab, relative to the vertical extent [-]
   double slab_spacings = 8; ///< least height of the slab, in spacings [-]
-  double thin = 0.003;      ///< spread below which a stem may be a hanging twig, in extents [-]
-  //! heights of two further slabs, searched if the first stem is thin, relative to the extent [-]
+  //! spread below which a stem may be a hanging twig, relative to the vertical extent [-]
+  double thin = 0.003;
+  //! heights of two further slabs, relative to the vertical extent; they are searched if the first
+  //! stem is thin [-]
   double wide_slab = 0.1, widest_slab = 0.2;
-  double thicker =
-      /// a stem of a further slab replaces a thin stem if its spread is this many times as large
-      /// and, in the widest slab, its foot is round; also the least ratio of ring radii [-]
-      3;
-  double band = 0.4; ///< height of the root points, in half widths of the stem [-]
-  //! largest spread of a stem at a given root; wider sections are crowns. In extents [-]
+  //! a stem of a further slab that does not contain the thin stem replaces it if its spread is this
+  //! many times as large and, in the widest slab, its foot is round; also the least ratio of the
+  //! ring radii of the first stem and of one with a larger catchment [-]
+  double thicker = 3;
+  double band = 0.4; ///< height of the root points, in spreads of the stem [-]
+  //! largest spread of a stem at a given root, relative to the extent; crowns are wider [-]
   double widest_hinted = 0.1;
-  double foot_widths = 2; ///< radius of the foot on the ground, in widths of the stem [-]
-  double rival = 0.03;    ///< least number of points of another stem, relative to the first [-]
+  //! radius of the foot on the ground without `slab_spacings`, in widths of the stem [-]
+  double foot_widths = 2;
+  //! least number of points of a stem whose catchment counts, relative to the first [-]
+  double rival = 0.03;
   double smallest_component =
       0.05; ///< least fraction of all points in a component that may contain the root [-]
-  //! the same for an upright component, such as a stem below an occlusion [-]
+  //! the same for an upright component, such as a stem below an occluded part [-]
   double smallest_piece = 0.01;
   //! least height of such a component, relative to the root mean square distance of its points from
   //! its vertical axis [-]
   double upright = 4;
-  double above = 0.7; ///< least cosine between `up` and the gap from its top to the tree [-]
-  double floating =
-      0.05; ///< largest height of the lower end of such a component, relative to the extent [-]
+  //! least cosine between `up` and the vector from its top to the nearest large component [-]
+  double above = 0.7;
+  //! largest height of the lower end of a component with the root, relative to the extent [-]
+  double floating = 0.05;
   double ring_deviation = 0.15; ///< largest deviation of points from a ring, in radii [-]
   double ring_spreads = 2;      ///< largest radius of a ring, in spreads of its points [-]
   //! A stem is lying if its length exceeds `lying_length` slab heights and `lying_ratio` widths, or
@@ -103,7 +110,8 @@ struct Stem
        const Root_options& rules)
     : points(low_parts.points_of(s)), shape(scan, points, up)
   {
-    const double length = std::sqrt(12.0) * shape.length; // of a uniform line of this deviation
+    // of a uniformly sampled segment with this standard deviation
+    const double length = std::sqrt(12.0) * shape.length;
     const double share = double(points.size()) / double(parts.size[parts.part[s]]);
     is_lying =
         (length > rules.lying_length * slab && shape.length > rules.lying_ratio * shape.width) ||
@@ -111,10 +119,10 @@ struct Stem
   }
 };
 
-/// Returns the stem with the largest catchment. The catchment of a stem comprises the points in the
-/// upper half to which it is the nearest stem along shortest paths. Returns `first` unless the
-/// catchment of another stem has more than twice as many points. `stem_of_point` contains the stems
-/// of the lowest points. O(points log points).
+/// Returns the stem with the largest catchment. The catchment of a stem comprises the points
+/// above half the height for which it is the nearest stem along shortest paths. Returns `first`
+/// unless the catchment of another stem has more than twice as many points. `stem_of_point`
+/// contains the stems of the lowest points. O(points log points).
 inline Index stem_with_largest_catchment(const Scan& scan,
                                          const std::vector<double>& height,
                                          const Links& links,
@@ -190,7 +198,8 @@ public:
   const std::vector<double>& height() const { return m_height; }
   double extent() const { return m_high - m_low; } ///< vertical, of all large components [L]
 
-  /// Returns the stem around point `seed`: the connected points at most a slab above or below it.
+  /// Returns the stem around point `seed`: the connected points at most the height of a slab above
+  /// or below it.
   Stem around(Index seed) const
   {
     const double slab = height_of_slab(m_rules.slab);
@@ -243,7 +252,7 @@ private:
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 
   /// Marks the components that may contain the root: large ones, and smaller ones that are upright,
-  /// such as a stem below an occlusion. The result is indexed like `Point_parts::size`.
+  /// such as a stem below an occluded part. The result is indexed like `Point_parts::size`.
   std::vector<std::uint8_t> large_parts(const std::vector<std::uint8_t>& is_used) const
   {
     const std::size_t n = m_scan.size();
@@ -291,7 +300,8 @@ private:
                m_rules.above * std::sqrt(above.squared_distance);
   }
 
-  /// Returns the height of a slab [L]. `share` is this height as a fraction of the vertical extent.
+  /// Returns the height of a slab: `share` of the vertical extent, but at least `slab_spacings`
+  /// spacings [L].
   double height_of_slab(double share) const
   {
     return std::max(share * (m_high - m_low), m_rules.slab_spacings * m_scan.spacing);
@@ -415,7 +425,7 @@ std::vector<Index> find_root(const Scan& scan,
 
 /*!
   Returns the lowest points of the stem whose foot on the ground is known: the result of
-  `find_root()` if it is at the foot, otherwise the connected points around and below the foot.
+  `find_root()` if it is at the foot, otherwise the lowest of the connected points at the foot.
 */
 template <class ConcurrencyTag>
 std::vector<Index> find_root_at(const Stem_foot& foot,

@@ -25,7 +25,7 @@ struct Surface_wood_options
 {
   double thinnest = 1.3;  ///< least radius, in spacings [-]
   double depth = 0.3;     ///< least depth of inside points below the surface, in radii [-]
-  double depth_noise = 2; ///< least depth of inside points, in noise [-]
+  double depth_noise = 2; ///< least depth of inside points, in units of the noise [-]
   double filled = 0.1;    ///< largest fraction of points inside a hollow section [-]
   double expected = 0.3;  ///< least number of surface points, relative to the expected number [-]
   double fewest = 12;     ///< least number of surface points [count]

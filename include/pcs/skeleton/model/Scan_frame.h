@@ -16,8 +16,8 @@ namespace skeleton {
   Local frame. The origin is a robust mean of the points. The third axis points upwards. The first
   axis points horizontally towards a mean of the points that is weighted by their distances. The
   unit is a typical distance of points from the origin. All computations use these coordinates,
-  rounded to a grid: transformed copies of a scan are then bitwise identical, and results do not
-  depend on rounding.
+  rounded to a grid: copies of a scan that were moved, scaled or rotated about the vertical then
+  have the same coordinates, except within rounding errors of a cell border.
 */
 struct Scan_frame
 {

@@ -27,7 +27,7 @@ namespace skeleton {
 struct Support_options
 {
   double depth = 0.3;          ///< least depth of inside points below the surface, in radii [-]
-  double depth_noise = 2;      ///< least depth of inside points, in noise [-]
+  double depth_noise = 2;      ///< least depth of inside points, in units of the noise [-]
   double filled = 0.2;         ///< fraction of inside points above which a section is filled [-]
   double branch_filled = 0.15; ///< the same for all sections from the base of the branch [-]
   std::size_t reach = 2;       ///< nodes included on both sides [count]

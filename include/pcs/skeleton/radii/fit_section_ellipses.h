@@ -28,7 +28,7 @@ struct Section_ellipse_options
   std::size_t lowest_count = 20; ///< least number of points [count]
   int sectors = 10;              ///< least number of sectors, of 12, with points [count]
   double significance = 4;       ///< difference of the semi-axes, in standard deviations [-]
-  double thickness = 3;          ///< smallest radius in noise [-]
+  double thickness = 3;          ///< smallest radius, in units of the noise [-]
 };
 
 /*!

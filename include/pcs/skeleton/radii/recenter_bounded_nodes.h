@@ -24,7 +24,8 @@ namespace skeleton {
 /// Criteria and weights for re-centring bounded nodes.
 struct Recentering_options
 {
-  double apart = 3;       ///< least mean distance of the points outside the surface, in noise [-],
+  //! least mean distance of the points outside the surface, in units of the noise [-],
+  double apart = 3;
   double one_side = 0.85; ///< ... least length of the mean of their normals [-],
   double fewest = 3;      ///< ... and least sum of their weights [count]
   std::size_t reach = 3;  ///< nodes on both sides whose points count [count]

@@ -37,20 +37,23 @@ struct Scan_grid_options
 /// causes of their residuals.
 struct Station_alignment_options
 {
-  double thickness = 3; ///< smallest radius, in noise [-]
+  double thickness = 3; ///< smallest radius, in units of the noise [-]
   std::size_t fewest =
       10; ///< least points of a piece; pieces are halved while both halves have as many [count]
-  double longest = 32;          ///< largest half length of a piece, in radii [-]
-  double fit = 3;               ///< error of a fitted radius or position, in noise [-] ...
+  double longest = 32; ///< largest half length of a piece, in radii [-]
+  //! error of a fitted radius or position, in units of the noise [-] ...
+  double fit = 3;
   double relative_fit = 0.2;    ///< ... combined with an error in radii [-]
   double oval = 0.04;           ///< half difference of the semi-axes of a section, in radii [-]
   double largest_error = 4.685; ///< residual of weight 0, in noise (Tukey's constant) [-]
-  double motion = 1;            ///< prior standard deviation of the motions, in noise [-]
+  //! prior standard deviation of the motions, in units of the noise [-]
+  double motion = 1;
   //! error of the motions, relative to their size, above which more points are used [-] ...
   double agreement = 0.4;
-  double least = 0.25;           ///< ... unless the motions are smaller than this, in noise [-]
+  //! ... unless the motions are smaller than this, in units of the noise [-]
+  double least = 0.25;
   std::size_t fewest_pieces = 8; ///< least pieces of every second axis for an error [count]
-  //! size of the applied motions above which another draft follows, in noise [-]
+  //! size of the applied motions above which another draft follows, in units of the noise [-]
   double much = 1.5;
   int passes = 3; ///< largest number of drafts [count]
   int rounds = 6; ///< Gauss-Newton steps per estimate [count]

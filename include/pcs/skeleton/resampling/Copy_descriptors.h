@@ -57,8 +57,8 @@ struct Copy_descriptors
   /*!
     Returns how far the descriptors of a skeleton are from the medians of the copies and this
     skeleton: the largest difference in units of 1 % of the height, 2 % of the diameter at breast
-    height, 5 % of the length of the trunk, 5 % of the volume, or 4 % of the breast height for the
-    position of the root [-]. 0 without copies.
+    height, 5 % of the length of the trunk, 5 % of the volume, or 4 % of the breast height for each
+    coordinate of the root [-]. 0 without copies.
   */
   double distance_from_medians(const Skeleton_report& r, const Vec3& root_position) const
   {

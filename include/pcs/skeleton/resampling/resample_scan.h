@@ -9,8 +9,10 @@
 #include <pcs/skeleton/model/Scan.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 namespace pcs {
@@ -32,7 +34,7 @@ constexpr std::size_t least_resampled_points = 100;
 inline double resampled_fraction(std::size_t n)
 {
   constexpr double max_fraction = 0.9;
-  constexpr double max_points = 40000; // enough for trunk and limbs, and fast
+  constexpr double max_points = 40000; // enough for the trunk and thick branches, and fast
   return std::min(max_fraction, max_points / double(std::max<std::size_t>(n, 1)));
 }
 
@@ -59,14 +61,18 @@ inline Scan_points resample_scan(const Scan_points& scan, std::uint64_t seed)
   return copy;
 }
 
-/// Displaces each coordinate by at most `largest` [L]. The displacements depend only on `seed` and
-/// the indices of the points. O(n).
+/// Displaces each coordinate by at most `largest` [L]. The displacement of a point depends only on
+/// `seed` and its position, so equal points remain equal. O(n).
 inline void displace_points(std::vector<Vec3>& points, double largest, std::uint64_t seed)
 {
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    pcs::internal::Random_stream random(seed, i);
+  for (Vec3& p : points) {
+    std::array<std::uint64_t, 3> bits{};
+    static_assert(sizeof bits == sizeof p);
+    p += Vec3::Zero(); // -0 becomes 0, which is equal
+    std::memcpy(bits.data(), p.data(), sizeof bits);
+    pcs::internal::Random_stream random(seed, bits[0], bits[1], bits[2]);
     for (int k = 0; k < 3; ++k)
-      points[i][k] += largest * (2 * random.uniform() - 1);
+      p[k] += largest * (2 * random.uniform() - 1);
   }
 }
 

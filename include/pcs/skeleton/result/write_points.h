@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Writes the caller's property maps of points: branches, residuals, leaves, normals, densities.
+// Writes the caller's property maps of points: branches, residuals, leaves, normals, fitted
+// sections.
 
 #ifndef PCS_SKELETON_RESULT_WRITE_POINTS_H
 #define PCS_SKELETON_RESULT_WRITE_POINTS_H
@@ -161,8 +162,8 @@ void write_densities(const Session<ConcurrencyTag>& session,
 
 } // namespace internal
 
-/// Writes the property maps of the points that `np` contains. The maps are written on this thread.
-/// O(n).
+/// Writes the property maps of points that are given in `np`, on the calling thread. O(n) for n
+/// points.
 template <class ConcurrencyTag, class PointRange, class NamedParameters>
 void write_points(const Session<ConcurrencyTag>& session,
                   const PointRange& points,

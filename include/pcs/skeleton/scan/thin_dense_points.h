@@ -28,7 +28,7 @@ struct Thinning_options
   //! seconds, and the curvature of a stem with few points resembles noise.
   std::size_t fewest = 200000;
   double flat = 0.37;   ///< least fraction of the points on flat patches, which show the noise [-]
-  double side = 3.6;    ///< of the cells, in noise [-]
+  double side = 3.6;    ///< of the cells, in units of the noise [-]
   double steps = 8;     ///< sides per factor of two: nearly equal scans have equal cells [count]
   double growth = 1.4;  ///< least ratio of the numbers of cells of half and of full side [-]
   double margin = 0.15; ///< most points of a cell beside a surface, relative to one on it [-]
