@@ -15,6 +15,7 @@
 #include <pcs/deformation/body/interior_links.h>
 #include <pcs/deformation/body/octree_samples.h>
 #include <pcs/deformation/body/voronoi_graph.h>
+#include <pcs/deformation/model/Harmonic_system.h>
 #include <pcs/internal/Stage_timer.h>
 #include <pcs/internal/median.h>
 #include <pcs/internal/parallel.h>
