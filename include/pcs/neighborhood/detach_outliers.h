@@ -34,36 +34,56 @@ struct Outlier
 
 namespace internal {
 
+/// Returns the upper median of the lengths of the links of a point. `lengths` is a buffer.
+inline double median_link(const std::vector<Eigen::Vector3d>& points,
+                          const Proximity_graph& graph,
+                          std::size_t i,
+                          std::vector<double>& lengths)
+{
+  lengths.clear();
+  for (auto j = graph.begin(i); j != graph.end(i); ++j)
+    lengths.push_back((points[*j] - points[i]).norm());
+  return pcs::internal::upper_median(lengths);
+}
+
+/// Returns the length of the shortest link of each point, 0 without links.
+template <class ConcurrencyTag>
+std::vector<double> shortest_links(const std::vector<Eigen::Vector3d>& points,
+                                   const Proximity_graph& graph)
+{
+  std::vector<double> shortest(points.size(), 0);
+  pcs::internal::for_each_index<ConcurrencyTag>(points.size(), [&](std::size_t i) {
+    double least = std::numeric_limits<double>::infinity();
+    for (auto j = graph.begin(i); j != graph.end(i); ++j)
+      least = std::min(least, (points[*j] - points[i]).squaredNorm());
+    if (graph.degree(i) > 0)
+      shortest[i] = std::sqrt(least);
+  });
+  return shortest;
+}
+
 /// Returns 1 for points whose shortest link is much longer than the spacing of their neighbours.
 template <class ConcurrencyTag>
 std::vector<char> mark_outliers(const std::vector<Eigen::Vector3d>& points,
                                 const Proximity_graph& graph)
 {
   const std::size_t n = points.size();
-  std::vector<double> shortest(n, 0), spacing(n, 0);
-  pcs::internal::for_each_block<ConcurrencyTag>(n, 512, [&](std::size_t begin, std::size_t end) {
-    std::vector<double> lengths;
-    for (std::size_t i = begin; i < end; ++i) {
-      lengths.clear();
-      for (auto j = graph.begin(i); j != graph.end(i); ++j)
-        lengths.push_back((points[*j] - points[i]).norm());
-      if (lengths.empty())
-        continue;
-      shortest[i] = *std::min_element(lengths.begin(), lengths.end());
-      spacing[i] = pcs::internal::upper_median(lengths);
-    }
-  });
+  const std::vector<double> shortest = shortest_links<ConcurrencyTag>(points, graph);
   std::vector<char> is_outlier(n, 0);
   pcs::internal::for_each_block<ConcurrencyTag>(n, 512, [&](std::size_t begin, std::size_t end) {
-    std::vector<double> spacings;
+    std::vector<double> spacings, lengths;
     for (std::size_t i = begin; i < end; ++i) {
+      const double longest = shortest[i] / smallest_outlier_gap;
+      // medians of links are at least the shortest links, which excludes nearly all points
+      const auto smaller = std::count_if(graph.begin(i), graph.end(i), [&](std::uint32_t j) {
+        return shortest[j] < longest;
+      });
+      if (smaller <= static_cast<std::ptrdiff_t>(graph.degree(i) / 2))
+        continue;
       spacings.clear();
       for (auto j = graph.begin(i); j != graph.end(i); ++j)
-        spacings.push_back(spacing[*j]);
-      is_outlier[i] = !spacings.empty() && shortest[i] > smallest_outlier_gap *
-                                                             pcs::internal::upper_median(spacings)
-                          ? 1
-                          : 0;
+        spacings.push_back(median_link(points, graph, *j, lengths));
+      is_outlier[i] = shortest[i] > smallest_outlier_gap * pcs::internal::upper_median(spacings);
     }
   });
   return is_outlier;
