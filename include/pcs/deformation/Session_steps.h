@@ -1,0 +1,206 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Steps of an editing session: construction, constraints, solving, and a new rest shape.
+
+#ifndef PCS_DEFORMATION_SESSION_STEPS_H
+#define PCS_DEFORMATION_SESSION_STEPS_H
+
+#include <pcs/core/Deformation_options.h>
+#include <pcs/core/Deformation_report.h>
+#include <pcs/core/Status.h>
+#include <pcs/deformation/Session_state.h>
+#include <pcs/deformation/body/Sampled_body.h>
+#include <pcs/deformation/handles/constrain_body.h>
+#include <pcs/deformation/model/Affine_map.h>
+#include <pcs/deformation/model/Elastic_options.h>
+#include <pcs/deformation/multigrid/Coarse_levels.h>
+#include <pcs/deformation/solver/Elastic_solver.h>
+#include <pcs/deformation/upsampling/Upsampling.h>
+#include <pcs/deformation/upsampling/read_maps.h>
+#include <pcs/internal/Stage_timer.h>
+#include <pcs/internal/parallel.h>
+#include <pcs/internal/progress.h>
+
+#include <cstddef>
+#include <functional>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace deformation {
+
+namespace internal {
+
+// ---- construction
+
+template <class Tag>
+void describe_body(Session_state<Tag>& s)
+{
+  const Sampled_body<Tag>& body = s.body;
+  s.report.number_of_points = body.number_of_points();
+  s.report.number_of_duplicates = body.number_of_points() - body.number_of_sites();
+  s.report.number_of_samples = body.network.size();
+  s.report.number_of_interior_links = body.network.links.neighbor.size() / 2;
+  s.report.number_of_components = body.number_of_components();
+  s.report.number_of_short_cuts = body.number_of_short_cuts;
+}
+
+/// Prepares the borders of handles and the upsampling.
+template <class Tag>
+void prepare_points(Session_state<Tag>& s)
+{
+  if (!s.body.is_sampled)
+    return;
+  const pcs::internal::Stage_timer timer(s.report.seconds.sampling);
+  const auto row = [&](std::size_t place) { return s.body.site_of_place[place]; };
+  s.border_finder = Border_finder(s.body.site_graph);
+  s.upsampling = Upsampling(s.body.number_of_points(), row, s.body.links_of_site);
+  s.body.links_of_site = Sample_links();
+}
+
+template <class Tag>
+void prepare_samples(Session_state<Tag>& s)
+{
+  s.maps.assign(s.body.network.size(), identity_map());
+  s.next_maps = s.maps;
+  s.coarse = Coarse_levels<Tag>(s.body.network,
+                                s.body.component_of_sample(),
+                                s.body.options.do_preserve_volume);
+}
+
+// ---- constraints
+
+/// Factorises the network of the finest level and, meanwhile, finds the points near handles.
+/// Returns `false` if a matrix is singular.
+template <class Tag>
+bool constrain_finest(Session_state<Tag>& s, Body_constraints found)
+{
+  if (found.has_network)
+    s.network = std::move(found.network);
+  bool is_regular = false;
+  pcs::internal::invoke_both<Tag>(
+      [&] {
+        is_regular = s.solver.constrain(found.has_network ? s.network : s.body.network,
+                                        std::move(found.of_nodes),
+                                        s.stiffness);
+      },
+      [&] {
+        if (s.body.is_sampled)
+          s.fades.find(s.body, found.border, exact_handles(s.handles));
+      });
+  return is_regular;
+}
+
+// ---- solving
+
+/// Starts the report of a solve. The first report keeps the seconds of the construction.
+template <class Tag>
+void start_report(Session_state<Tag>& s)
+{
+  if (s.was_reported)
+    s.report.seconds = Deformation_report::Seconds();
+  s.was_reported = true;
+  s.report.number_of_iterations = 0;
+  s.report.initial_energy = s.report.energy = 0;
+}
+
+/// Without handles, sets the shape to the rest shape.
+template <class Tag>
+Status solve_nothing(Session_state<Tag>& s)
+{
+  put_samples_at_rest(s);
+  s.local_transforms.clear();
+  return Status::nothing_to_do;
+}
+
+/// Solves on all levels, the coarsest first.
+template <class Tag>
+Elastic_result solve_levels(Session_state<Tag>& s,
+                            const Elastic_options& options,
+                            pcs::internal::Progress& progress)
+{
+  const Deviation_guess* guess = nullptr;
+  {
+    const pcs::internal::Stage_timer timer(s.report.seconds.coarse_levels);
+    guess = &s.coarse.solve(s.next_transforms, options, progress);
+  }
+  return s.solver.solve(s.next_transforms, options, progress, *guess);
+}
+
+/// Solves from the last solution if `start` is warm and this solution is near, otherwise from the
+/// rest shape.
+template <class Tag>
+Elastic_result solve_samples(Session_state<Tag>& s,
+                             const Elastic_options& options,
+                             Solver_start start,
+                             pcs::internal::Progress& progress)
+{
+  s.handles.local_transforms(s.body.frame, s.next_transforms);
+  Elastic_result result;
+  const bool is_warm =
+      start == Solver_start::warm && s.has_solution && !s.coarse.has_link_offsets();
+  const double highest_energy = largest_warm_growth * s.last_energy;
+  if (!is_warm ||
+      !s.solver.solve_further(s.next_transforms, options, progress, highest_energy, result))
+    result = solve_levels(s, options, progress);
+  if (!progress(1)) // the last call: afterwards, points are written
+    result.status = Status::cancelled;
+  s.has_solution = result.status != Status::cancelled;
+  s.last_energy = result.energy;
+  return result;
+}
+
+template <class Tag>
+void describe_result(Session_state<Tag>& s, const Elastic_result& result)
+{
+  const double unit = s.body.frame.unit;
+  s.report.number_of_iterations = static_cast<std::size_t>(result.number_of_passes);
+  s.report.initial_energy = result.initial_energy * unit * unit;
+  s.report.energy = result.energy * unit * unit;
+}
+
+/// Makes the solution the current shape. Returns `false`, and changes nothing, if the solution is
+/// not finite.
+template <class Tag>
+bool take_shape(Session_state<Tag>& s)
+{
+  if (!read_maps<Tag>(s.solver.state(),
+                      s.next_transforms,
+                      s.body.network.rest,
+                      s.next_maps,
+                      s.are_finite))
+    return false;
+  s.local_transforms.swap(s.next_transforms);
+  s.maps.swap(s.next_maps);
+  s.shape_transforms = s.handles.transforms();
+  s.setting_of_shape = s.setting;
+  s.is_at_rest = false;
+  return true;
+}
+
+// ---- a new rest shape
+
+/// Sets the rest positions of points and samples. `position(input index)` is in the caller's
+/// coordinates.
+template <class Tag>
+void move_rest(Session_state<Tag>& s, const std::function<Vec3(std::size_t)>& position)
+{
+  Sampled_body<Tag>& body = s.body;
+  body.rest_points.set_positions(
+      [&](std::size_t place) { return body.frame.to_local(position(body.input_of_place[place])); });
+  std::vector<Vec3> points(body.number_of_points());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    points[i] = position(i);
+  s.rest_positions.keep(body.frame, std::move(points));
+  for (std::size_t sample = 0; sample < body.network.size(); ++sample)
+    body.network.rest[sample] = body.rest_of_site(body.site_of_sample[sample]);
+  s.coarse.accept(body.network);
+  s.carrier.reset();
+}
+
+} // namespace internal
+
+} // namespace deformation
+} // namespace pcs
+
+#endif // PCS_DEFORMATION_SESSION_STEPS_H
