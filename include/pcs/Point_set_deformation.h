@@ -275,6 +275,42 @@ public:
       });
   }
 
+  /*!
+    Sets one target position for each point of the handle. The motion of the handle becomes the
+    rigid motion with the least sum of squared distances to the targets, by at most 180 degrees. The
+    targets may stretch and bend the handle in any way.
+
+    | handle | result |
+    |---|---|
+    | exact | its points reach their targets with all bits of double precision, their normals and
+      gradients are those of a linear map that is fitted to the targets around them, and the points
+      around the handle follow |
+    | soft | springs pull its points to the targets. In the region of a sample, they pull to the
+      mean of the differences between the targets and the rigid motion |
+
+    If the points do not determine the rigid motion, it is the one with the smallest rotation: one
+    point translates the handle, and collinear points do not turn it about their line. The scale of
+    the motion is 1. The next call that sets a motion, a rotation, a translation, a scale or targets
+    of the handle replaces the targets; so do `reset()` and `accept()`. A rotation, translation or
+    scale replaces one part of the rigid motion and keeps the others.
+
+    Nothing is factorised. The call is O(points of the handle). The next `deform()` needs about
+    1 microsecond and 150 bytes more for each point of the handle and around it.
+
+    \param targets a range of points or vectors, in the order of the points in `add_handle()` [L]
+    \throws Invalid_input if there is no such handle, the number of targets is not that of the
+            points, a target is not finite or too far away, or two points of the handle are at the
+            same place and have different targets. Nothing is changed then.
+  */
+  template <class TargetRange>
+  void set_targets(Handle handle, const TargetRange& targets)
+  {
+    const char* function = "pcs::Point_set_deformation::set_targets()";
+    deformation::check_handle(m_session, handle, function);
+    m_session->set_targets(handle, deformation::read_targets(targets), function);
+    m_motion[handle] = {Similarity(), m_session->transform(handle), Similarity()};
+  }
+
   /// The whole motion from rest: scale, then rotation, then translation.
   const Similarity& transformation(Handle handle) const
   {

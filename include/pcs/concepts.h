@@ -171,6 +171,16 @@ struct Is_index_range<T, std::enable_if_t<!std::is_void_v<typename Iterator_of<c
 {
 };
 
+template <class T, class = void>
+struct Is_point_range : std::false_type
+{
+};
+template <class T>
+struct Is_point_range<T, std::enable_if_t<!std::is_void_v<typename Iterator_of<const T>::type>>>
+  : Is_point<std::decay_t<decltype(*std::begin(std::declval<const T&>()))>>
+{
+};
+
 template <class Graph, class = void>
 struct Is_rooted_tree_graph : std::false_type
 {
@@ -196,6 +206,10 @@ struct Is_rooted_tree_graph<
 //! whether `T` is a range of integers: the indices of points
 template <class T>
 constexpr bool is_index_range_v = internal::Is_index_range<T>::value;
+
+//! whether `T` is a range of points or vectors
+template <class T>
+constexpr bool is_point_range_v = internal::Is_point_range<T>::value;
 
 //! whether `T` can be called with the completed fraction of the work and returns whether to
 //! continue

@@ -27,6 +27,9 @@ struct Deformation_handle
   std::vector<std::size_t> indices; //!< numbers of the points
   Similarity transformation;        //!< motion from rest; the identity fixes the points
   double softness = 0;              //!< see `Point_set_deformation::add_handle()` [-]
+  //! target of each point; if not empty, it replaces the transformation, see
+  //! `Point_set_deformation::set_targets()` [L]
+  std::vector<Similarity::Vec3> targets = {};
 };
 
 namespace internal {
@@ -129,8 +132,13 @@ Deformation_report deform_point_set(PointRange&& points,
     if (std::begin(handles) == std::end(handles))
       throw Invalid_input("pcs::deform_point_set(): there is no handle");
     return internal::deform_once<ConcurrencyTag>(points, np, [&](auto& session) {
-      for (const Deformation_handle& h : handles)
-        session.set_transformation(session.add_handle(h.indices, h.softness), h.transformation);
+      for (const Deformation_handle& h : handles) {
+        const auto handle = session.add_handle(h.indices, h.softness);
+        if (h.targets.empty())
+          session.set_transformation(handle, h.transformation);
+        else
+          session.set_targets(handle, h.targets);
+      }
     });
   } else
     return Deformation_report();

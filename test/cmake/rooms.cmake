@@ -11,6 +11,8 @@ set(root_deformation Session.h access)
 set(deformation_session
   body/Sampled_body.h
   body/Sampled_body_impl.h
+  handles/Handle_set.h
+  handles/Target_field.h
   handles/constrain_body.h
   multigrid/Coarse_levels.h
   solver/Elastic_solver.h
@@ -19,6 +21,7 @@ set(deformation_session
   upsampling/Outlier_maps.h
   upsampling/Point_carrier.h
   upsampling/Rest_positions.h
+  upsampling/Target_corrections.h
   upsampling/Upsampling.h
   upsampling/read_maps.h
   upsampling/write_points.h)
@@ -36,7 +39,9 @@ set(deformation_upsampling
   body/Sample_regions.h
   body/Sampled_body.h
   handles/Border_finder.h
+  handles/Handle_set.h
   handles/Site_constraints.h
+  handles/Target_field.h
   solver/Elastic_state.h)
 
 # ---- skeleton: extract_tree_skeleton, segment_trees

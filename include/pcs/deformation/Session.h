@@ -27,16 +27,18 @@ namespace pcs {
 namespace deformation {
 
 struct Handle_points;
+struct Handle_targets;
 
 /// State of the samples and handles, from which the positions of all points can be restored.
 struct Session_snapshot
 {
-  std::vector<Similarity> transforms;                        ///< of the handles
-  std::vector<std::shared_ptr<const Handle_points>> handles; ///< shared with the session
-  std::vector<Vec3> centroids;                               ///< of the handles
-  std::vector<Affine_map> maps;                              ///< of the samples
-  std::uint64_t rest_setting = 0;                            ///< identifies session and rest shape
-  std::uint64_t setting = 0;                                 ///< identifies the handles, too
+  std::vector<Similarity> transforms;                         ///< of the handles
+  std::vector<std::shared_ptr<const Handle_points>> handles;  ///< shared with the session
+  std::vector<std::shared_ptr<const Handle_targets>> targets; ///< shared with the session
+  std::vector<Vec3> centroids;                                ///< of the handles
+  std::vector<Affine_map> maps;                               ///< of the samples
+  std::uint64_t rest_setting = 0;                             ///< identifies session and rest shape
+  std::uint64_t setting = 0;                                  ///< identifies the handles, too
   bool is_at_rest = true;
 };
 
@@ -83,6 +85,10 @@ public:
 
   /// Throws `Invalid_input` if double precision cannot represent the motion and the cloud together.
   void set_transform(std::size_t handle, const Similarity& transform);
+
+  /// Sets one target for each point of the handle, in the order of `add_handle()`, in the caller's
+  /// coordinates, and the rigid motion that fits them best. The next motion replaces them.
+  void set_targets(std::size_t handle, const std::vector<Vec3>& targets, const char* function);
 
   /// Factorises if handles changed since the last factorisation. Returns `false` if a matrix is
   /// singular.

@@ -125,6 +125,14 @@ void Session<ConcurrencyTag>::set_transform(std::size_t handle, const Similarity
 }
 
 template <class ConcurrencyTag>
+void Session<ConcurrencyTag>::set_targets(std::size_t handle,
+                                          const std::vector<Vec3>& targets,
+                                          const char* function)
+{
+  m_state->handles.set_targets(m_state->body, handle, targets, function);
+}
+
+template <class ConcurrencyTag>
 bool Session<ConcurrencyTag>::constrain(double stiffness)
 {
   Session_state<ConcurrencyTag>& s = *m_state;
@@ -137,6 +145,7 @@ bool Session<ConcurrencyTag>::constrain(double stiffness)
   s.setting_of_sites = s.setting;
   Body_constraints found = constrain_body(s.body, s.border_finder, s.handles, s.sites, s.report);
   const bool is_regular = s.coarse.constrain(s.body.network, found.of_samples, stiffness);
+  s.of_samples = std::move(found.of_samples);
   s.is_constrained = internal::constrain_finest(s, std::move(found)) && is_regular;
   return s.is_constrained;
 }
@@ -184,6 +193,7 @@ Session_snapshot Session<ConcurrencyTag>::snapshot() const
   const Session_state<ConcurrencyTag>& s = *m_state;
   return {s.shape_transforms,
           s.handles.points(),
+          s.shape_targets,
           s.handles.centroids(),
           s.maps,
           s.rest_setting,
@@ -195,17 +205,21 @@ template <class ConcurrencyTag>
 void Session<ConcurrencyTag>::restore(const Session_snapshot& snapshot)
 {
   Session_state<ConcurrencyTag>& s = *m_state;
-  s.handles.restore(snapshot.handles, snapshot.centroids, snapshot.transforms);
+  s.handles.restore(snapshot.handles, snapshot.centroids, snapshot.transforms, snapshot.targets);
   if (s.setting != snapshot.setting)
     s.dirty_handles.replace_handles();
   s.setting = snapshot.setting;
   s.maps = snapshot.maps;
   s.shape_transforms = s.handles.transforms();
+  s.shape_targets = s.handles.targets();
   s.setting_of_shape = s.setting;
   s.is_at_rest = snapshot.is_at_rest;
   s.has_solution = false;
   internal::localize_transforms(s);
   constrain(s.stiffness);
+  Target_field field;
+  field.find(s.body, s.handles.points(), s.handles.targets(), s.local_transforms);
+  internal::find_corrections(s, field);
 }
 
 template <class ConcurrencyTag>
@@ -233,6 +247,7 @@ Moved_points<ConcurrencyTag> Session<ConcurrencyTag>::moved_points()
           s.maps,
           s.outlier_maps,
           s.sites,
+          s.corrections,
           s.local_transforms,
           is_written,
           s.rest_positions,
@@ -244,7 +259,7 @@ Moved_points<ConcurrencyTag> Session<ConcurrencyTag>::moved_points()
 template <class ConcurrencyTag>
 void Session<ConcurrencyTag>::finish_writing()
 {
-  m_state->dirty_handles.finish(m_state->local_transforms);
+  m_state->dirty_handles.finish();
 }
 
 template <class ConcurrencyTag>
@@ -255,7 +270,7 @@ void Session<ConcurrencyTag>::carry(Vec3& point, Vec3& normal, Eigen::Matrix3d& 
   const std::size_t site = s.carrier->nearest_site(local);
   const Node_constraint h = s.sites[site];
   if (h >= 0)
-    internal::carry_with_handle(s, h, local, point, normal, gradient);
+    internal::carry_with_handle(s, h, site, local, point, normal, gradient);
   else if (h == free_node || h == outlier_site)
     internal::carry_with_samples(s, site, local, point, normal, gradient);
 }
@@ -269,7 +284,7 @@ Eigen::Matrix3d Session<ConcurrencyTag>::gradient(std::size_t i) const
   const std::size_t site = s.body.site_of_input[i];
   const Node_constraint h = s.sites[site];
   if (h >= 0)
-    return internal::gradient_of_handle(s, h);
+    return internal::gradient_of_handle(s, h, site);
   if (h == outlier_site)
     return Eigen::Map<const Row_major_matrix>(s.outlier_maps.of_site(s.body, site).a);
   if (h != free_node)

@@ -25,12 +25,21 @@ namespace deformation {
 
 namespace internal {
 
+/// Whether a handle has targets in the current shape.
+template <class Tag>
+bool has_shape_targets(const Session_state<Tag>& s, std::size_t handle)
+{
+  return handle < s.shape_targets.size() && s.shape_targets[handle] != nullptr;
+}
+
 // ---- points of the session
 
 template <class Tag>
 const std::vector<char>& find_written_handles(Session_state<Tag>& s)
 {
+  const auto has_targets = [&](std::size_t h) { return has_shape_targets(s, h); };
   return s.dirty_handles.find(s.local_transforms,
+                              has_targets,
                               s.handles.has_outside(),
                               s.sites.take_followed_handles(),
                               s.is_at_rest);
@@ -46,15 +55,20 @@ Upsampling::Block_motions block_motions(Session_state<Tag>& s, const std::vector
           s.sites.holder().data(),
           is_written.data(),
           s.handle_maps.data(),
-          s.local_transforms.empty() ? Upsampling::Fades() : s.fades.of_blocks()};
+          s.local_transforms.empty() ? Upsampling::Fades() : s.fades.of_blocks(),
+          s.corrections.empty() ? nullptr : &s.corrections,
+          s.body.site_of_place.data()};
 }
 
-/// Returns the gradient of the points of a handle in the current shape.
+/// Returns the gradient of a point that a handle holds in the current shape.
 template <class Tag>
-Eigen::Matrix3d gradient_of_handle(const Session_state<Tag>& s, Node_constraint h)
+Eigen::Matrix3d gradient_of_handle(const Session_state<Tag>& s, Node_constraint h, std::size_t site)
 {
   const Similarity& t = s.local_transforms[static_cast<std::size_t>(h)];
-  return t.scale() * t.rotation();
+  Eigen::Matrix3d gradient = t.scale() * t.rotation();
+  Vec3 position = Vec3::Zero(), normal = Vec3::Zero(); // not used
+  s.corrections.apply(site, s.body.frame, position, normal, gradient);
+  return gradient;
 }
 
 /// Returns the gradient of a point of a sampled body in the current shape. The gradients of points
@@ -66,7 +80,9 @@ Eigen::Matrix3d gradient_of_samples(const Session_state<Tag>& s, std::size_t pla
                                           s.sites.holder().data(),
                                           nullptr,
                                           s.handle_maps.data(),
-                                          s.fades.of_blocks()};
+                                          s.fades.of_blocks(),
+                                          s.corrections.empty() ? nullptr : &s.corrections,
+                                          s.body.site_of_place.data()};
   return s.upsampling.gradient(place, s.body.rest_points, motions);
 }
 
@@ -75,17 +91,20 @@ Eigen::Matrix3d gradient_of_samples(const Session_state<Tag>& s, std::size_t pla
 template <class Tag>
 void carry_with_handle(const Session_state<Tag>& s,
                        Node_constraint h,
+                       std::size_t site,
                        const Vec3& local,
                        Vec3& point,
                        Vec3& normal,
                        Eigen::Matrix3d& gradient)
 {
   const Similarity& t = s.local_transforms[static_cast<std::size_t>(h)];
-  if (t.is_identity())
+  if (t.is_identity() && !has_shape_targets(s, static_cast<std::size_t>(h)))
     return;
   point = s.body.frame.to_world(t(local));
   normal = t.rotation() * normal;
   gradient = t.scale() * t.rotation();
+  const Vec3 step = local - s.body.rest_of_site(site);
+  s.corrections.apply_near(site, step, s.body.frame, point, normal, gradient);
 }
 
 /// Returns the map of a point whose nearest site is `site`, which is free or an outlier.
@@ -113,6 +132,10 @@ void carry_with_samples(const Session_state<Tag>& s,
     s.fades.apply(site, s.local_transforms, local, normal, moved, turned, gradient);
   point = s.body.frame.to_world(moved);
   normal = turned;
+  if (s.sites[site] != outlier_site) {
+    const Vec3 step = local - s.body.rest_of_site(site);
+    s.corrections.apply_near(site, step, s.body.frame, point, normal, gradient);
+  }
 }
 
 template <class Tag>

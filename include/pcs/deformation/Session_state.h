@@ -8,6 +8,7 @@
 #include <pcs/core/Deformation_report.h>
 #include <pcs/core/Similarity.h>
 #include <pcs/deformation/body/Sampled_body.h>
+#include <pcs/deformation/handles/Target_field.h>
 #include <pcs/deformation/handles/constrain_body.h>
 #include <pcs/deformation/model/Affine_map.h>
 #include <pcs/deformation/multigrid/Coarse_levels.h>
@@ -17,6 +18,7 @@
 #include <pcs/deformation/upsampling/Outlier_maps.h>
 #include <pcs/deformation/upsampling/Point_carrier.h>
 #include <pcs/deformation/upsampling/Rest_positions.h>
+#include <pcs/deformation/upsampling/Target_corrections.h>
 #include <pcs/deformation/upsampling/Upsampling.h>
 
 #include <atomic>
@@ -52,6 +54,7 @@ struct Session_state
   Site_constraints sites;
   Elastic_network
       network; ///< the samples and the nodes on the borders of handles, if there are any
+  Node_constraints of_samples;
   Elastic_solver<ConcurrencyTag> solver;
   Handle_fades fades;
   double stiffness = 1;
@@ -66,11 +69,14 @@ struct Session_state
   std::vector<Affine_map> maps;             ///< of the samples
   std::vector<Similarity> local_transforms; ///< of the handles, for these maps
   std::vector<Similarity> shape_transforms; ///< of the handles, in the caller's coordinates
-  std::uint64_t setting_of_shape = 0;       ///< setting for which the shape was solved
+  std::vector<std::shared_ptr<const Handle_targets>> shape_targets; ///< of the handles
+  Target_corrections corrections;                                   ///< from `shape_targets`
+  std::uint64_t setting_of_shape = 0; ///< setting for which the shape was solved
   bool is_at_rest = true;
 
   // ---- memory of the next shape, kept so that frames allocate nothing
   std::vector<Similarity> next_transforms;
+  Target_field next_targets;
   std::vector<Affine_map> next_maps;
   std::vector<int> are_finite;
 
@@ -94,6 +100,8 @@ template <class Tag>
 void keep_rest(Session_state<Tag>& s)
 {
   s.shape_transforms.assign(s.handles.size(), Similarity());
+  s.shape_targets.assign(s.handles.size(), nullptr);
+  s.corrections.clear();
   s.setting_of_shape = s.setting;
   s.is_at_rest = true;
 }

@@ -10,9 +10,14 @@
 #include <pcs/core/Status.h>
 #include <pcs/deformation/Session_state.h>
 #include <pcs/deformation/body/Sampled_body.h>
+#include <pcs/deformation/handles/Handle_set.h>
+#include <pcs/deformation/handles/Target_field.h>
 #include <pcs/deformation/handles/constrain_body.h>
 #include <pcs/deformation/model/Affine_map.h>
+#include <pcs/deformation/model/Elastic_network.h>
 #include <pcs/deformation/model/Elastic_options.h>
+#include <pcs/deformation/model/Harmonic_system.h>
+#include <pcs/deformation/model/Node_targets.h>
 #include <pcs/deformation/multigrid/Coarse_levels.h>
 #include <pcs/deformation/solver/Elastic_solver.h>
 #include <pcs/deformation/upsampling/Upsampling.h>
@@ -91,6 +96,44 @@ bool constrain_finest(Session_state<Tag>& s, Body_constraints found)
   return is_regular;
 }
 
+// ---- targets of handles
+
+/// Finds the offsets of the targets of all handles from their motions, and sets those of the nodes
+/// of all networks.
+template <class Tag>
+void set_node_targets(Session_state<Tag>& s)
+{
+  s.next_targets.find(s.body, s.handles.points(), s.handles.targets(), s.next_transforms);
+  Node_targets& nodes = s.solver.targets();
+  nodes.clear();
+  if (!s.next_targets.empty()) {
+    const std::vector<Similarity>& t = s.next_transforms;
+    const std::size_t number_of_samples = s.body.network.size();
+    nodes.assign(number_of_samples);
+    s.next_targets.set_samples(s.body, s.of_samples, s.handles, t, nodes);
+    s.coarse.set_targets(s.of_samples, nodes);
+    const Elastic_network& network = s.solver.network();
+    nodes.resize(network.size());
+    const Node_constraints& constraints = s.solver.constraints();
+    s.next_targets.set_border(s.body, network, constraints, t, number_of_samples, nodes);
+  } else
+    s.coarse.set_targets(s.of_samples, nodes);
+}
+
+/// Finds the corrections of the current shape.
+template <class Tag>
+void find_corrections(Session_state<Tag>& s, const Target_field& field)
+{
+  s.corrections.find(s.body,
+                     s.handles,
+                     s.shape_targets,
+                     s.local_transforms,
+                     field,
+                     s.sites,
+                     s.fades.of_sites(),
+                     exact_handles(s.handles));
+}
+
 // ---- solving
 
 /// Starts the report of a solve. The first report keeps the seconds of the construction.
@@ -136,6 +179,7 @@ Elastic_result solve_samples(Session_state<Tag>& s,
                              pcs::internal::Progress& progress)
 {
   s.handles.local_transforms(s.body.frame, s.next_transforms);
+  set_node_targets(s);
   Elastic_result result;
   const bool is_warm =
       start == Solver_start::warm && s.has_solution && !s.coarse.has_link_offsets();
@@ -166,6 +210,7 @@ bool take_shape(Session_state<Tag>& s)
 {
   if (!read_maps<Tag>(s.solver.state(),
                       s.next_transforms,
+                      std::as_const(s.solver).targets(),
                       s.body.network.rest,
                       s.next_maps,
                       s.are_finite))
@@ -173,6 +218,8 @@ bool take_shape(Session_state<Tag>& s)
   s.local_transforms.swap(s.next_transforms);
   s.maps.swap(s.next_maps);
   s.shape_transforms = s.handles.transforms();
+  s.shape_targets = s.handles.targets();
+  find_corrections(s, s.next_targets);
   s.setting_of_shape = s.setting;
   s.is_at_rest = false;
   return true;

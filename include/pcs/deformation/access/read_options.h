@@ -8,12 +8,15 @@
 #include <pcs/Named_function_parameters.h>
 #include <pcs/concepts.h>
 #include <pcs/core/Deformation_options.h>
+#include <pcs/core/Similarity.h>
 #include <pcs/core/errors.h>
 #include <pcs/core/parameters/check_value.h>
 #include <pcs/core/parameters/read_parameter.h>
 #include <pcs/deformation/model/Elastic_options.h>
 #include <pcs/deformation/model/Sampling_options.h>
 #include <pcs/neighborhood/Proximity_graph.h>
+
+#include <Eigen/Core>
 
 #include <cstddef>
 #include <cstdint>
@@ -82,6 +85,20 @@ read_indices(const IndexRange& indices, std::size_t n, const std::string& caller
                             " is out of range; there are " + std::to_string(n) + " points");
       result.push_back(static_cast<std::uint32_t>(i));
     }
+  return result;
+}
+
+/// Converts target positions to double precision.
+template <class TargetRange>
+std::vector<Eigen::Vector3d> read_targets(const TargetRange& targets)
+{
+  static_assert(is_point_range_v<TargetRange>,
+                "pcs: targets must be a range of points with x(), y(), z(), like Kernel::Point_3, "
+                "one for each point of the handle");
+  std::vector<Eigen::Vector3d> result;
+  if constexpr (is_point_range_v<TargetRange>)
+    for (const auto& target : targets)
+      result.push_back(pcs::internal::to_eigen(target));
   return result;
 }
 

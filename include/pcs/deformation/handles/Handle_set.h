@@ -8,6 +8,8 @@
 #include <pcs/core/Similarity.h>
 #include <pcs/core/errors.h>
 #include <pcs/deformation/body/Sampled_body.h>
+#include <pcs/deformation/handles/Handle_targets.h>
+#include <pcs/deformation/handles/fit_rigid_motion.h>
 #include <pcs/deformation/model/Elastic_network.h>
 #include <pcs/deformation/model/Harmonic_system.h>
 #include <pcs/deformation/model/Local_frame.h>
@@ -20,6 +22,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -28,14 +31,6 @@ namespace deformation {
 
 /// A site that is not in the region of interest.
 constexpr Node_constraint outside_region = -3;
-
-/// The points of a handle and their softness. Sets of handles and snapshots share these objects.
-struct Handle_points
-{
-  std::vector<std::uint32_t> sites;      ///< each once
-  std::vector<std::uint32_t> components; ///< of the sites, increasing
-  double weight = 0;                     ///< 0: exact; positive: soft, see `Node_constraints`
-};
 
 /// The handles of a session: points, softness and motion. Transformations are in the caller's
 /// coordinates. A number is given to one handle only, even if `restore()` removes this handle.
@@ -76,6 +71,8 @@ public:
   /// Returns the centroid of the handle's points at rest.
   const Vec3& centroid(std::size_t handle) const { return m_centroid[handle]; }
   const std::vector<Vec3>& centroids() const { return m_centroid; }
+  /// Returns the targets of each handle, null for those that move by their transformation.
+  const std::vector<std::shared_ptr<const Handle_targets>>& targets() const { return m_targets; }
   /// Returns the points of each handle, null for removed ones.
   const std::vector<std::shared_ptr<const Handle_points>>& points() const { return m_points; }
 
@@ -148,7 +145,7 @@ public:
     for (const auto i : indices) {
       const std::size_t site = body.site_of_input[i];
       if (m_handle_of_site[site] == static_cast<Node_constraint>(handle))
-        continue;
+        continue; // another point at the same place
       m_handle_of_site[site] = static_cast<Node_constraint>(handle);
       is_reached[body.component_of_site[site]] = 1;
       sum += body.rest_of_site(site);
@@ -158,6 +155,8 @@ public:
       if (is_reached[c])
         points->components.push_back(static_cast<std::uint32_t>(c));
     points->weight = weight;
+    if (points->sites.size() < indices.size())
+      number_points(body, indices, *points);
     resize(handle + 1); // numbers of handles that `restore()` removed count as removed handles
     m_weight[handle] = weight;
     m_centroid[handle] = body.frame.to_world(sum / static_cast<double>(points->sites.size()));
@@ -172,27 +171,58 @@ public:
     m_points[handle].reset();
     m_weight[handle] = 0;
     m_transforms[handle] = Similarity();
+    m_targets[handle].reset();
   }
 
-  /// Throws `Invalid_input` if double precision cannot represent the motion and the cloud together.
+  /// Replaces the targets of the handle. Throws `Invalid_input` if double precision cannot
+  /// represent the motion and the cloud together.
   void set_transform(const Local_frame& frame, std::size_t handle, const Similarity& transform)
   {
-    const double distance = (transform(frame.origin) - frame.origin).norm() / frame.unit;
-    if (!transform.is_finite() || !(distance < largest_motion) ||
-        !(transform.scale() < largest_motion && transform.scale() > 1 / largest_motion))
-      throw Invalid_input("pcs deformation: the motion of handle " + std::to_string(handle) +
-                          " has scale " + pcs::internal::to_text(transform.scale()) +
-                          " and takes the cloud " + pcs::internal::to_text(distance) +
-                          " times its extent away; both must be less than " +
-                          pcs::internal::to_text(largest_motion));
+    check_transform(frame, handle, transform);
     m_transforms[handle] = transform;
+    m_targets[handle].reset();
   }
 
-  /// Restores earlier handles, with the results of `points()`, `centroids()` and `transforms()`.
-  /// Only the points of handles that were added or removed since then are visited.
+  /// Sets one target for each point of the handle, in the order of `add()`, and the rigid motion
+  /// that fits them best. Throws `Invalid_input`, and changes nothing, if their number is another
+  /// one, a target is not finite or too far away, or points at the same place have different
+  /// targets.
+  template <class ConcurrencyTag>
+  void set_targets(const Sampled_body<ConcurrencyTag>& body,
+                   std::size_t handle,
+                   const std::vector<Vec3>& targets,
+                   const char* function)
+  {
+    const std::string of_handle = std::string(function) + ": handle " + std::to_string(handle);
+    check_targets(*m_points[handle], targets, body.frame, largest_motion, of_handle);
+    auto given = std::make_shared<Handle_targets>();
+    given->of_sites = targets_of_sites(*m_points[handle], targets, of_handle);
+    std::vector<Vec3> rest, target;
+    for (const auto site : m_points[handle]->sites)
+      rest.push_back(body.rest_of_site(site));
+    for (const Vec3& t : given->of_sites)
+      target.push_back(body.frame.to_local(t));
+    if (rest == target) {
+      set_transform(body.frame, handle, Similarity());
+      return;
+    }
+    const Similarity local = fit_rigid_motion(rest, target);
+    Similarity turn;
+    for (const auto& t : local.turns())
+      turn = Similarity::from_turn(t) * turn;
+    const Similarity motion = Similarity::from_translation(body.frame.unit * local.translation()) *
+                              Similarity::about(turn, body.frame.origin);
+    check_transform(body.frame, handle, motion);
+    m_transforms[handle] = motion;
+    m_targets[handle] = std::move(given);
+  }
+
+  /// Restores earlier handles, with the results of `points()`, `centroids()`, `transforms()` and
+  /// `targets()`. Only the points of handles that were added or removed since then are visited.
   void restore(std::vector<std::shared_ptr<const Handle_points>> points,
                std::vector<Vec3> centroids,
-               std::vector<Similarity> transforms)
+               std::vector<Similarity> transforms,
+               std::vector<std::shared_ptr<const Handle_targets>> targets)
   {
     std::vector<double> weights;
     for (const auto& p : points)
@@ -211,10 +241,15 @@ public:
     m_points = std::move(points);
     m_centroid = std::move(centroids);
     m_transforms = std::move(transforms);
+    m_targets = std::move(targets);
     m_weight = std::move(weights);
   }
 
-  void put_at_rest() { m_transforms.assign(size(), Similarity()); }
+  void put_at_rest()
+  {
+    m_transforms.assign(size(), Similarity());
+    m_targets.assign(size(), nullptr);
+  }
 
   /// Converts the transformations to local coordinates: `x -> sR x + (sR c + t - c) / unit`, with
   /// the origin `c`. The outside of the region is last.
@@ -260,6 +295,33 @@ private:
     return points != nullptr;
   }
 
+  /// Throws `Invalid_input` if double precision cannot represent the motion and the cloud together.
+  static void
+  check_transform(const Local_frame& frame, std::size_t handle, const Similarity& transform)
+  {
+    const double distance = (transform(frame.origin) - frame.origin).norm() / frame.unit;
+    if (!transform.is_finite() || !(distance < largest_motion) ||
+        !(transform.scale() < largest_motion && transform.scale() > 1 / largest_motion))
+      throw Invalid_input("pcs deformation: the motion of handle " + std::to_string(handle) +
+                          " has scale " + pcs::internal::to_text(transform.scale()) +
+                          " and takes the cloud " + pcs::internal::to_text(distance) +
+                          " times its extent away; both must be less than " +
+                          pcs::internal::to_text(largest_motion));
+  }
+
+  /// Sets `place_of_point`.
+  template <class ConcurrencyTag>
+  static void number_points(const Sampled_body<ConcurrencyTag>& body,
+                            const std::vector<std::uint32_t>& indices,
+                            Handle_points& points)
+  {
+    std::unordered_map<std::uint32_t, std::uint32_t> place_of_site; // never iterated over
+    for (std::size_t k = 0; k < points.sites.size(); ++k)
+      place_of_site.emplace(points.sites[k], static_cast<std::uint32_t>(k));
+    for (const auto i : indices)
+      points.place_of_point.push_back(place_of_site.at(body.site_of_input[i]));
+  }
+
   void hold_sites(const Handle_points& points, Node_constraint handle)
   {
     for (const auto site : points.sites)
@@ -272,6 +334,7 @@ private:
     m_weight.resize(count, 0);
     m_centroid.resize(count, Vec3::Zero());
     m_points.resize(count);
+    m_targets.resize(count);
   }
 
   std::vector<Node_constraint> m_handle_of_site;
@@ -282,6 +345,7 @@ private:
   std::vector<double> m_weight; ///< 0: exact
   std::vector<Vec3> m_centroid;
   std::vector<std::shared_ptr<const Handle_points>> m_points; ///< null for a removed handle
+  std::vector<std::shared_ptr<const Handle_targets>> m_targets;
 };
 
 } // namespace deformation

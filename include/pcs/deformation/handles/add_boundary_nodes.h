@@ -123,6 +123,7 @@ private:
   {
     const auto node = static_cast<std::uint32_t>(m_result.rest.size());
     m_result.rest.push_back(m_in.site_position(site));
+    m_result.source.push_back(site);
     m_constraints.handle_of_node.push_back(h);
     const double distance = std::max(shortest_boundary_edge * m_typical_edge,
                                      (m_result.rest.back() - m_in.network.rest[s]).norm());

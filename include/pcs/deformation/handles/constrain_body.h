@@ -17,6 +17,7 @@
 #include <pcs/deformation/model/Harmonic_system.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace pcs {
@@ -91,8 +92,11 @@ Body_constraints constrain_body(const Sampled_body<ConcurrencyTag>& body,
   result.has_network = true;
   if (body.is_sampled)
     internal::add_border_nodes(body, border_finder, handle_of_site, result);
-  else
+  else {
     result.has_network = straighten_borders(body.network, result.of_nodes, result.network);
+    for (std::uint32_t& source : result.network.source)
+      source = body.site_of_sample[source];
+  }
   return result;
 }
 

@@ -161,6 +161,7 @@ inline Elastic_network cut_held_edges(const Elastic_network& network,
       add(static_cast<std::uint32_t>(result.rest.size()), new_weight(*next));
       const Vec3& held = network.rest[next->handle_node];
       result.rest.push_back(held + next->fraction * (network.rest[i] - held));
+      result.source.push_back(next->handle_node);
       constraints.handle_of_node.push_back(constraints.handle_of_node[next->handle_node]);
     }
     end_row();

@@ -39,6 +39,9 @@ struct Elastic_network
   /// Orders of elimination of the first nodes, for factors of the surface, and of surface and
   /// links. They apply to any choice of free nodes; empty if computing them does not pay.
   std::vector<std::uint32_t> surface_rank, rank;
+  /// The origins of the nodes that were added after the first ones on the borders of handles:
+  /// sites, or nodes of the finer network.
+  std::vector<std::uint32_t> source;
   std::size_t size() const { return rest.size(); }
 };
 

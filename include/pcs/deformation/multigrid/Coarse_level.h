@@ -14,6 +14,7 @@
 #include <pcs/deformation/handles/anchor_free_components.h>
 #include <pcs/deformation/model/Elastic_network.h>
 #include <pcs/deformation/model/Harmonic_system.h>
+#include <pcs/deformation/model/Node_targets.h>
 #include <pcs/deformation/solver/Elastic_solver.h>
 #include <pcs/internal/parallel.h>
 
@@ -123,6 +124,33 @@ public:
     return m_solver.constrain(m_bounded, std::move(constraints), stiffness);
   }
 
+  /// Transfers the offsets of the nodes of handles with targets from the finer level.
+  void set_targets(const Node_constraints& of_finer, const Node_targets& finer)
+  {
+    m_targets.clear();
+    m_solver.targets().clear();
+    if (finer.empty())
+      return;
+    m_targets.assign(m_network.size());
+    for (std::size_t s = 0; s < m_network.size(); ++s) {
+      const std::uint32_t node = m_node_of_sample[s];
+      if (m_constraints.handle_of_node[s] >= 0 &&
+          of_finer.handle_of_node[node] == m_constraints.handle_of_node[s])
+        m_targets.set(s, finer[node]);
+    }
+    set_targets_of_drawn_nodes(of_finer, finer);
+    if (m_bounded.size() == 0)
+      return; // this level only interpolates
+    Node_targets& targets = m_solver.targets();
+    targets.assign(m_bounded.size());
+    for (std::size_t s = 0; s < m_network.size(); ++s)
+      targets.set(s, m_targets[s]);
+    for (std::size_t s = m_network.size(); s < m_bounded.size(); ++s)
+      targets.set(s, finer[m_bounded.source[s - m_network.size()]]);
+  }
+
+  const Node_targets& targets() const { return m_targets; }
+
   /// Iterates on this level, unless `progress` cancels. On input, `guess` is empty or refers to the
   /// nodes of this level; on output it refers to the nodes of the finer level. The tolerance is
   /// proportional to the cost of an iteration relative to one with `finest_size` nodes.
@@ -182,6 +210,25 @@ private:
     }
   }
 
+  /// Gives nodes that a handle holds only by nodes in their regions the mean offset of these nodes.
+  void set_targets_of_drawn_nodes(const Node_constraints& of_finer, const Node_targets& finer)
+  {
+    std::vector<double> count(m_network.size(), 0);
+    std::vector<Target_offset> mean(m_network.size());
+    for (std::size_t i = 0; i < m_sample_of_node.size(); ++i) {
+      const std::uint32_t s = m_sample_of_node[i];
+      if (s == no_sample || m_constraints.handle_of_node[s] < 0 ||
+          of_finer.handle_of_node[i] != m_constraints.handle_of_node[s] ||
+          of_finer.handle_of_node[m_node_of_sample[s]] == m_constraints.handle_of_node[s])
+        continue;
+      count[s] += 1;
+      mean[s].blend(1 / count[s], finer[i]);
+    }
+    for (std::size_t s = 0; s < mean.size(); ++s)
+      if (count[s] > 0)
+        m_targets.set(s, mean[s]);
+  }
+
   void to_finer(std::vector<Vec3>& values)
   {
     m_fine.assign(m_sample_of_node.size(), Vec3::Zero());
@@ -200,6 +247,7 @@ private:
   Sample_links m_links; ///< from the finer nodes to the samples
   Node_constraints m_constraints;
   Elastic_network m_bounded; ///< with nodes on the borders of the handles
+  Node_targets m_targets;    ///< of the nodes of `m_network`
   Elastic_solver<ConcurrencyTag> m_solver;
   std::vector<Vec3> m_fine; ///< values at the nodes of the finer network
 };

@@ -8,6 +8,8 @@
 #include <pcs/core/Similarity.h>
 #include <pcs/deformation/model/Elastic_network.h>
 #include <pcs/deformation/model/Elastic_options.h>
+#include <pcs/deformation/model/Harmonic_system.h>
+#include <pcs/deformation/model/Node_targets.h>
 #include <pcs/deformation/multigrid/Coarse_level.h>
 #include <pcs/internal/progress.h>
 
@@ -67,6 +69,19 @@ public:
       of_finer = &m_level[l].constraints();
     }
     return is_regular;
+  }
+
+  /// Transfers the offsets of the nodes of handles with targets from the session's network to all
+  /// levels, after `constrain()`. `of_finest` are the constraints that were given there.
+  void set_targets(const Node_constraints& of_finest, const Node_targets& finest)
+  {
+    const Node_constraints* of_finer = &of_finest;
+    const Node_targets* finer = &finest;
+    for (auto& level : m_level) {
+      level.set_targets(*of_finer, *finer);
+      of_finer = &level.constraints();
+      finer = &level.targets();
+    }
   }
 
   /// Solves from the coarsest to the finest level, unless `progress` cancels. Returns the guess for

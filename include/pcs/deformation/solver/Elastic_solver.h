@@ -9,6 +9,7 @@
 #include <pcs/core/Status.h>
 #include <pcs/deformation/model/Elastic_network.h>
 #include <pcs/deformation/model/Elastic_options.h>
+#include <pcs/deformation/model/Node_targets.h>
 #include <pcs/deformation/solver/Anderson_mixing.h>
 #include <pcs/deformation/solver/Elastic_state.h>
 #include <pcs/deformation/solver/Elastic_step.h>
@@ -53,6 +54,8 @@ public:
   const std::vector<Vec3>& deviations() const { return m_smooth; }
 
   /// See `Elastic_step`, also for `constrain()`.
+  Node_targets& targets() { return m_shape.targets(); }
+  const Node_targets& targets() const { return m_shape.targets(); }
   void link_offsets(std::vector<Vec3>& offsets) { m_shape.link_offsets(offsets); }
   bool constrain(const Elastic_network& network, Node_constraints constraints, double stiffness)
   {
@@ -75,11 +78,14 @@ public:
     m_mixing.restart();
     m_smooth.assign(network().size(), Vec3::Zero());
     m_best_smooth.assign(network().size(), Vec3::Zero());
+    set_held_deviations();
     result.is_far_from_field = has_offsets || (has_passes && guess.is_far_from_field);
-    if (result.is_far_from_field) {
+    if (result.is_far_from_field)
       take(guess);
+    else if (!targets().empty())
+      m_shape.interpolate_deviations(m_smooth);
+    if (result.is_far_from_field || !targets().empty())
       m_shape.turn(m_smooth);
-    }
     m_shape.place(true);
     result.energy = result.initial_energy = m_shape.fit_and_measure(true);
     make_passes(options, progress, result.is_far_from_field ? nullptr : &guess, result);
@@ -101,6 +107,7 @@ public:
     result = Elastic_result();
     m_shape.begin(transforms, options, true, nullptr);
     m_mixing.restart();
+    set_held_deviations();
     result.is_far_from_field = true;
     m_shape.turn(m_smooth);
     m_shape.place(false);
@@ -113,6 +120,12 @@ public:
 
 private:
   const Free_rows& rows() const { return m_shape.rows(); }
+
+  void set_held_deviations()
+  {
+    m_shape.set_held_deviations(m_smooth);
+    m_shape.set_held_deviations(m_best_smooth);
+  }
 
   /// Performs all iterations. The guess, if given, may replace the state after the first iteration.
   void make_passes(const Elastic_options& options,

@@ -96,12 +96,19 @@ struct Elastic_state
 
   double link_energy(std::size_t i) const
   {
+    return link_energy(i, [](std::size_t) { return true; });
+  }
+
+  /// Returns the energy of the links from node `i` to nodes `j > i` for which `counts(j)` is true.
+  template <class Counts>
+  double link_energy(std::size_t i, const Counts& counts) const
+  {
     const auto& links = network.links;
     double energy = 0;
     if (!links.neighbor.empty())
       for (std::size_t e = links.first[i]; e < links.first[i + 1]; ++e) {
         const std::size_t j = links.neighbor[e];
-        if (j < i)
+        if (j < i || !counts(j))
           continue;
         const double error = (position[i] - position[j]).norm() - rest_length(i, j);
         energy += links.weight[e] * error * error;

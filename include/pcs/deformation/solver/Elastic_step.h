@@ -9,10 +9,13 @@
 #include <pcs/core/rotations.h>
 #include <pcs/deformation/model/Elastic_network.h>
 #include <pcs/deformation/model/Elastic_options.h>
+#include <pcs/deformation/model/Harmonic_system.h>
+#include <pcs/deformation/model/Node_targets.h>
 #include <pcs/deformation/solver/Blended_scales.h>
 #include <pcs/deformation/solver/Elastic_factors.h>
 #include <pcs/deformation/solver/Elastic_state.h>
 #include <pcs/deformation/solver/Position_solver.h>
+#include <pcs/deformation/solver/Target_loads.h>
 #include <pcs/deformation/solver/fit_rotations.h>
 #include <pcs/deformation/solver/measure_edges.h>
 #include <pcs/deformation/solver/rotation_field.h>
@@ -65,11 +68,17 @@ public:
   {
     m_network = &network;
     m_constraints = std::move(constraints);
+    m_targets.clear();
     const bool is_regular = m_factors.factorize<ConcurrencyTag>(network, m_constraints, stiffness);
     m_position = network.rest;
     m_frame.assign(network.size(), Eigen::Matrix3d::Identity());
     return is_regular;
   }
+
+  /// The offsets of the nodes of handles with targets, for the next `begin()`. Empty if there are
+  /// none, and after `constrain()`.
+  Node_targets& targets() { return m_targets; }
+  const Node_targets& targets() const { return m_targets; }
 
   /*!
     Begins a solve for new motions of the handles, with the rotations of their field.
@@ -98,6 +107,12 @@ public:
     if (!m_scales.growth().empty())
       find_room();
     m_link_offsets = link_offsets;
+    if (m_targets.empty())
+      m_loads.clear();
+    else {
+      place_constrained_nodes(*m_network, m_constraints, *m_transforms, m_targets, m_position);
+      m_loads.find(state(), rows(), transforms, m_targets);
+    }
   }
 
   /// Whether positions contain offsets by links of another network. If so, energies cannot be
@@ -116,10 +131,27 @@ public:
         block);
   }
 
+  /// Sets the deviations of the nodes of handles with targets, which are constant.
+  void set_held_deviations(std::vector<Vec3>& deviations) const
+  {
+    for (std::size_t i = 0; i < m_targets.size(); ++i)
+      if (m_constraints.is_prescribed(i))
+        deviations[i] = rodrigues_from_rotation(m_targets.turn(i));
+  }
+
+  /// Interpolates the deviations of the nodes of handles with targets harmonically.
+  void interpolate_deviations(std::vector<Vec3>& deviations)
+  {
+    m_rhs = m_loads.of_rows();
+    m_factors.field().template solve<ConcurrencyTag>(m_rhs, m_work);
+    for (std::size_t r = 0; r < rows().size(); ++r)
+      deviations[rows().node_of_row[r]] = m_rhs[r];
+  }
+
   /// Computes the positions of constrained nodes, then of all other nodes.
   void place(bool links_turn)
   {
-    place_constrained_nodes(*m_network, m_constraints, *m_transforms, m_position);
+    place_constrained_nodes(*m_network, m_constraints, *m_transforms, m_targets, m_position);
     follow(links_turn);
   }
 
@@ -134,15 +166,16 @@ public:
   /// directions in the last positions.
   void solve_positions(bool links_turn)
   {
-    m_position_solver(state(), *m_transforms, m_factors, links_turn, m_position);
+    m_position_solver(state(), *m_transforms, m_targets, m_factors, links_turn, m_position);
     if (m_link_offsets)
       for (const auto i : rows().node_of_row)
         if (i < m_link_offsets->size())
           m_position[i] += (*m_link_offsets)[i];
   }
 
-  /// Returns the energy of the current state. If a further iteration follows, also computes the
-  /// deviation of each node's best rotation from the field.
+  /// Returns the energy of the current state, without the constant energy inside handles with
+  /// targets. If a further iteration follows, also computes the deviation of each node's best
+  /// rotation from the field.
   double fit_and_measure(bool has_next)
   {
     const std::size_t n = m_network->size();
@@ -154,15 +187,20 @@ public:
                                                     m_energies[begin / block] =
                                                         fit_block(begin, end, has_next);
                                                   });
-    return std::accumulate(m_energies.begin(), m_energies.end(), 0.0);
+    const double sum = std::accumulate(m_energies.begin(), m_energies.end(), 0.0);
+    const double energy = sum - m_loads.held_energy();
+    return energy < 0 ? 0 : energy; // negative by rounding only
   }
 
-  /// Smooths the deviations of the best-fitting rotations: `(L + mu D) d' = mu D d`. [rad]
+  /// Smooths the deviations of the best-fitting rotations: `(L + mu D) d' = mu D d`, plus the loads
+  /// of nodes that handles with targets turn. [rad]
   void smooth_deviations(std::vector<Vec3>& smooth)
   {
     m_rhs.resize(rows().size());
     pcs::internal::for_each_index<ConcurrencyTag>(rows().size(), [&](std::size_t r) {
       m_rhs[r] = m_factors.fit_weight(r) * m_deviation[rows().node_of_row[r]];
+      if (!m_loads.of_rows().empty())
+        m_rhs[r] += m_loads.of_rows()[r];
     });
     m_factors.smoothing().template solve<ConcurrencyTag>(m_rhs, m_work);
     pcs::internal::for_each_index<ConcurrencyTag>(rows().size(), [&](std::size_t r) {
@@ -178,7 +216,7 @@ public:
   /// without links for the same frames. Empty without links. One solve. [L]
   void link_offsets(std::vector<Vec3>& offsets)
   {
-    m_position_solver.link_offsets(state(), *m_transforms, m_factors, offsets);
+    m_position_solver.link_offsets(state(), *m_transforms, m_targets, m_factors, offsets);
   }
 
   /// \name Stored States
@@ -268,7 +306,7 @@ private:
   void find_room()
   {
     m_kept_position = m_position;
-    place_constrained_nodes(*m_network, m_constraints, *m_transforms, m_position);
+    place_constrained_nodes(*m_network, m_constraints, *m_transforms, m_targets, m_position);
     const double none = energy_with_share(0);
     m_ungrown = m_position;
     const double all = energy_with_share(1);
@@ -310,9 +348,9 @@ private:
         m_network->size(),
         [&](std::size_t i) {
           if (m_constraints.is_prescribed(i)) {
-            const Similarity& t =
-                (*m_transforms)[static_cast<std::size_t>(m_constraints.handle_of_node[i])];
-            m_frame[i] = t.scale() * t.rotation();
+            m_frame[i] = m_targets.frame(
+                (*m_transforms)[static_cast<std::size_t>(m_constraints.handle_of_node[i])],
+                i);
           } else {
             m_frame[i] = m_rotation[i].toRotationMatrix();
             if (!m_scales.growth().empty())
@@ -333,6 +371,8 @@ private:
 
   const std::vector<Similarity>* m_transforms = nullptr;
   const std::vector<Vec3>* m_link_offsets = nullptr;
+  Node_targets m_targets;
+  Target_loads m_loads;
   double m_poisson_ratio = 0;
   std::vector<Quaternion> m_field, m_rotation, m_kept_rotation;
   std::vector<Eigen::Matrix3d> m_frame, m_kept_frame, m_stretch, m_target;

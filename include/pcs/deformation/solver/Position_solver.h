@@ -8,6 +8,7 @@
 #include <pcs/core/Similarity.h>
 #include <pcs/deformation/model/Elastic_network.h>
 #include <pcs/deformation/model/Harmonic_system.h>
+#include <pcs/deformation/model/Node_targets.h>
 #include <pcs/deformation/solver/Elastic_factors.h>
 #include <pcs/deformation/solver/Elastic_state.h>
 #include <pcs/internal/parallel.h>
@@ -18,16 +19,19 @@
 namespace pcs {
 namespace deformation {
 
-/// Moves the nodes of handles rigidly; sets nodes of components without handle to rest.
+/// Moves the nodes of exact handles; sets nodes of components without handle to rest.
 inline void place_constrained_nodes(const Elastic_network& network,
                                     const Node_constraints& constraints,
                                     const std::vector<Similarity>& transforms,
+                                    const Node_targets& targets,
                                     std::vector<Vec3>& position)
 {
   for (std::size_t i = 0; i < network.size(); ++i)
     if (constraints.is_prescribed(i))
       position[i] =
-          transforms[static_cast<std::size_t>(constraints.handle_of_node[i])](network.rest[i]);
+          targets.position(transforms[static_cast<std::size_t>(constraints.handle_of_node[i])],
+                           network.rest[i],
+                           i);
     else if (constraints.handle_of_node[i] == unreached_node)
       position[i] = network.rest[i];
 }
@@ -45,6 +49,7 @@ public:
   /// because a link through a twisted bar must not rotate with either end.
   void operator()(const Elastic_state& state,
                   const std::vector<Similarity>& transforms,
+                  const Node_targets& targets,
                   const Elastic_factors& factors,
                   bool links_turn,
                   std::vector<Vec3>& position)
@@ -53,7 +58,7 @@ public:
     if (!links.neighbor.empty() && !links_turn)
       m_directing = position;
     solve(factors, factors.position(), [&](std::size_t i) {
-      Vec3 b = surface_load(state, transforms, i);
+      Vec3 b = surface_load(state, transforms, targets, i);
       if (!links.neighbor.empty())
         for (std::size_t e = links.first[i]; e < links.first[i + 1]; ++e) {
           const std::size_t j = links.neighbor[e];
@@ -80,6 +85,7 @@ public:
   /// links for the same frames. Empty without links. One solve. [L]
   void link_offsets(const Elastic_state& state,
                     const std::vector<Similarity>& transforms,
+                    const Node_targets& targets,
                     const Elastic_factors& factors,
                     std::vector<Vec3>& offsets)
   {
@@ -87,7 +93,7 @@ public:
     if (state.network.links.neighbor.empty())
       return;
     solve(factors, factors.field(), [&](std::size_t i) {
-      return surface_load(state, transforms, i);
+      return surface_load(state, transforms, targets, i);
     });
     offsets.assign(state.network.size(), Vec3::Zero());
     for (std::size_t r = 0; r < m_rhs.size(); ++r) {
@@ -112,14 +118,17 @@ private:
 
   static Vec3 surface_load(const Elastic_state& state,
                            const std::vector<Similarity>& transforms,
+                           const Node_targets& targets,
                            std::size_t node)
   {
     Vec3 b;
     const double degree = state.sum_edges(node, b);
     if (state.constraints.is_soft(node))
       b += state.constraints.soft_weight(node, degree) *
-           transforms[static_cast<std::size_t>(state.constraints.handle_of_node[node])](
-               state.network.rest[node]);
+           targets.position(
+               transforms[static_cast<std::size_t>(state.constraints.handle_of_node[node])],
+               state.network.rest[node],
+               node);
     return b;
   }
 

@@ -29,10 +29,13 @@ public:
 
     \param transforms of the handles, in local coordinates; the outside of the region of interest,
            which never moves, comes last if there is one
+    \param has_targets `has_targets(handle)`: whether its points have targets, and move therefore
     \param followed handles that displaced points have begun to follow
     \param is_at_rest whether the samples are at rest
   */
+  template <class HasTargets>
   const std::vector<char>& find(const std::vector<Similarity>& transforms,
+                                const HasTargets& has_targets,
                                 bool has_outside,
                                 const std::vector<Node_constraint>& followed,
                                 bool is_at_rest)
@@ -46,7 +49,7 @@ public:
         m_was_moved[static_cast<std::size_t>(h)] = 1;
     m_is_written.assign(transforms.size(), 0);
     for (std::size_t h = 0; h < count; ++h) {
-      const bool is_moved = !transforms[h].is_identity();
+      const bool is_moved = !transforms[h].is_identity() || has_targets(h);
       m_is_written[h] = is_moved         ? points_moved
                         : m_was_moved[h] ? points_at_rest
                                          : points_unwritten;
@@ -57,10 +60,10 @@ public:
   }
 
   /// Stores which handles are displaced after all points of `find()` were written.
-  void finish(const std::vector<Similarity>& transforms)
+  void finish()
   {
     for (std::size_t h = 0; h < m_was_moved.size(); ++h)
-      m_was_moved[h] = transforms[h].is_identity() ? 0 : 1;
+      m_was_moved[h] = m_is_written[h] == points_moved ? 1 : 0;
   }
 
   /// Marks all handles as moved, because their points may have been displaced by other handles.

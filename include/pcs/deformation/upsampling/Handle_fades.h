@@ -67,6 +67,9 @@ public:
     }
   }
 
+  /// The weights by site, increasing by site, then by handle.
+  const std::vector<Border_fade>& of_sites() const { return m_of_sites; }
+
   /// Returns the weights for the blocks of the upsampling; empty before `find()`.
   Upsampling::Fades of_blocks() const
   {

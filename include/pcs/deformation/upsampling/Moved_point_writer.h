@@ -12,6 +12,7 @@
 #include <pcs/deformation/upsampling/Dirty_handles.h>
 #include <pcs/deformation/upsampling/Outlier_maps.h>
 #include <pcs/deformation/upsampling/Rest_positions.h>
+#include <pcs/deformation/upsampling/Target_corrections.h>
 #include <pcs/deformation/upsampling/Upsampling.h>
 #include <pcs/internal/instruction_set.h>
 
@@ -32,6 +33,7 @@ struct Moved_points
   const std::vector<Affine_map>& maps; ///< of the samples
   const Outlier_maps& outlier_maps;
   const Site_constraints& sites;
+  const Target_corrections& corrections;
   const std::vector<Similarity>& transforms; ///< of the handles, in local coordinates
   const std::vector<char>& is_written;       ///< of each handle, from `Dirty_handles::find()`
   const Rest_positions& rest_positions;      ///< in the caller's coordinates
@@ -54,6 +56,7 @@ public:
     : m_body(moved.body),
       m_sites(moved.sites),
       m_outlier_maps(moved.outlier_maps),
+      m_corrections(moved.corrections),
       m_rest_positions(moved.rest_positions),
       m_transforms(moved.transforms),
       m_is_written(moved.is_written),
@@ -116,10 +119,11 @@ public:
     Vec3 normal = Vec3::Zero();
     if (m_body.rest_points.has_normals())
       normal = turn_normal(a, m_body.rest_points.normal(place));
-    write_local(place,
-                a * m_body.rest_points.position(place) + Eigen::Map<const Vec3>(map.t),
-                normal,
-                a);
+    write(place,
+          m_body.frame.to_world(a * m_body.rest_points.position(place) +
+                                Eigen::Map<const Vec3>(map.t)),
+          normal,
+          a);
   }
 
 private:
@@ -128,20 +132,16 @@ private:
     Vec3 normal = Vec3::Zero();
     if (m_body.rest_points.has_normals())
       normal = t.rotation() * m_body.rest_points.normal(place);
-    write_local(place, t(m_body.rest_points.position(place)), normal, t.scale() * t.rotation());
-  }
-
-  void write_local(std::size_t place,
-                   const Vec3& p,
-                   const Vec3& normal,
-                   const Eigen::Matrix3d& gradient) const
-  {
-    write(place, m_body.frame.to_world(p), normal, gradient);
+    Vec3 position = m_body.frame.to_world(t(m_body.rest_points.position(place)));
+    Eigen::Matrix3d gradient = t.scale() * t.rotation();
+    m_corrections.apply(m_body.site_of_place[place], m_body.frame, position, normal, gradient);
+    write(place, position, normal, gradient);
   }
 
   const Sampled_body<ConcurrencyTag>& m_body;
   const Site_constraints& m_sites;
   const Outlier_maps& m_outlier_maps;
+  const Target_corrections& m_corrections;
   const Rest_positions& m_rest_positions;
   const std::vector<Similarity>& m_transforms;
   const std::vector<char>& m_is_written;

@@ -10,6 +10,7 @@
 #include <pcs/deformation/model/Local_frame.h>
 #include <pcs/deformation/model/Point_blocks.h>
 #include <pcs/deformation/upsampling/Dirty_handles.h>
+#include <pcs/deformation/upsampling/Target_corrections.h>
 #include <pcs/deformation/upsampling/blend_block.h>
 #include <pcs/internal/Huge_page_allocator.h>
 #include <pcs/internal/instruction_set.h>
@@ -82,6 +83,8 @@ public:
     const char* is_written = nullptr; ///< for each handle, a value of `Dirty_handles::find()`
     const Handle_map* handles = nullptr;
     Fades fades;
+    const Target_corrections* corrections = nullptr; ///< null if no handle has targets
+    const std::uint32_t* site_of_place = nullptr;    ///< of the body, for the corrections
   };
 
   /*!
@@ -130,6 +133,13 @@ public:
     set_input(points, motions, i / lanes, in);
     Block_output out{};
     choose_blend_block<Blend_outputs::gradients>()(in, out);
+    if (motions.corrections)
+      motions.corrections->apply_to_block<Blend_outputs::gradients>(i / lanes,
+                                                                    whole_block,
+                                                                    motions.site_of_place,
+                                                                    frame,
+                                                                    points.has_normals(),
+                                                                    out);
     Eigen::Matrix3d result;
     for (int k = 0; k < 9; ++k)
       result(k / 3, k % 3) = out.gradient[k][i % lanes];
@@ -279,6 +289,13 @@ private:
             if (mask[block % 2] != 0) {
               set_input(points, motions, block, in);
               blend(in, out[block % 2]);
+              if (motions.corrections)
+                motions.corrections->apply_to_block<Outputs>(block,
+                                                             mask[block % 2],
+                                                             motions.site_of_place,
+                                                             frame,
+                                                             points.has_normals(),
+                                                             out[block % 2]);
             }
             if (block != begin)
               put(block - 1);

@@ -28,6 +28,7 @@ struct Border_fade
   std::uint32_t site;
   Node_constraint handle;
   double weight;
+  double distance; ///< from the handle along the graph, in sample spacings; in (0, 1)
 };
 
 namespace internal {
@@ -170,7 +171,7 @@ void append_fades(Iterator begin, Iterator end, std::vector<Border_fade>& fades)
 {
   const auto share = [](const Band_site& s) { return (1 - s.distance) * (1 - s.distance); };
   if (end - begin == 1) {
-    fades.push_back({begin->site, begin->handle, share(*begin)});
+    fades.push_back({begin->site, begin->handle, share(*begin), begin->distance});
     return;
   }
   double rest = 1, sum = 0;
@@ -184,7 +185,7 @@ void append_fades(Iterator begin, Iterator end, std::vector<Border_fade>& fades)
   double left = 1;
   for (Iterator s = end; s-- != begin;) {
     const double part = (1 - rest) * (share(*s) / (1 - share(*s))) / sum;
-    fades.push_back({s->site, s->handle, left > part ? part / left : 1});
+    fades.push_back({s->site, s->handle, left > part ? part / left : 1, s->distance});
     left -= part;
   }
   std::reverse(fades.begin() + static_cast<std::ptrdiff_t>(first), fades.end());

@@ -7,6 +7,7 @@
 
 #include <pcs/core/Similarity.h>
 #include <pcs/deformation/model/Affine_map.h>
+#include <pcs/deformation/model/Node_targets.h>
 #include <pcs/deformation/solver/Elastic_state.h>
 #include <pcs/internal/parallel.h>
 
@@ -34,6 +35,7 @@ has_sample_beside(const Weighted_graph& graph, std::size_t sample, std::size_t n
 /// and its new position. For samples without adjacent samples, the frame replaces the gradient. The
 /// samples are the first nodes of the network.
 /// \param transforms of the handles, in the coordinates of the network
+/// \param targets offsets of the nodes of handles with targets; may be empty
 /// \param rest of the samples [L]
 /// \param maps one for each sample
 /// \param are_finite workspace
@@ -41,6 +43,7 @@ has_sample_beside(const Weighted_graph& graph, std::size_t sample, std::size_t n
 template <class ConcurrencyTag>
 bool read_maps(const Elastic_state& state,
                const std::vector<Similarity>& transforms,
+               const Node_targets& targets,
                const std::vector<Vec3>& rest,
                std::vector<Affine_map>& maps,
                std::vector<int>& are_finite)
@@ -57,10 +60,16 @@ bool read_maps(const Elastic_state& state,
         const bool is_rigid = state.constraints.is_prescribed(s);
         const bool is_measured =
             !is_rigid && has_sample_beside(state.network.surface, s, maps.size());
-        const Eigen::Matrix3d a = is_measured ? state.deformation_gradient(s) : state.frame[s];
-        // A prescribed map is bitwise that of the handle.
-        const Vec3 t = is_rigid ? transforms[static_cast<std::size_t>(h)].translation()
-                                : Vec3(state.position[s] - a * rest[s]);
+        Eigen::Matrix3d a = is_measured ? state.deformation_gradient(s) : state.frame[s];
+        // A prescribed map is bitwise that of the handle, unless this has targets.
+        Vec3 t;
+        if (is_rigid && !targets.is_offset(s))
+          t = transforms[static_cast<std::size_t>(h)].translation();
+        else {
+          if (is_rigid)
+            a = targets.linear(transforms[static_cast<std::size_t>(h)], s);
+          t = state.position[s] - a * rest[s];
+        }
         Eigen::Map<Row_major_matrix>(maps[s].a) = a;
         Eigen::Map<Vec3>(maps[s].t) = t;
         return a.allFinite() && t.allFinite() ? 1 : 0;
