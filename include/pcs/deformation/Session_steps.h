@@ -220,6 +220,7 @@ bool take_shape(Session_state<Tag>& s)
   s.shape_transforms = s.handles.transforms();
   s.shape_targets = s.handles.targets();
   find_corrections(s, s.next_targets);
+  s.next_targets.clear(); // its memory is large
   s.setting_of_shape = s.setting;
   s.is_at_rest = false;
   return true;

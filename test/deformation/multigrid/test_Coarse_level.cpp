@@ -2,12 +2,16 @@
 // SPDX-License-Identifier: BSL-1.0
 // A coarse level samples the finer one, takes over its handles, and interpolates values to it.
 
+#include <pcs/core/rotations.h>
+#include <pcs/deformation/model/Node_targets.h>
 #include <pcs/deformation/multigrid/Coarse_level.h>
 #include <support/networks.h>
 
 #include <CGAL/tags.h>
 
 #include <boost/test/unit_test.hpp>
+
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
@@ -126,6 +130,58 @@ BOOST_AUTO_TEST_CASE(a_soft_handle_of_one_point_has_the_node_of_its_region)
   BOOST_TEST_REQUIRE(std::count(found.begin(), found.end(), 1) == 1);
   const auto s = static_cast<std::size_t>(std::find(found.begin(), found.end(), 1) - found.begin());
   BOOST_TEST((nodes[s] - sphere.finer.rest[point]).norm() < 0.25);
+}
+
+BOOST_AUTO_TEST_CASE(nodes_have_the_offset_of_their_point)
+{
+  Sphere sphere;
+  Node_constraints constraints = sphere.free_nodes({0, 0});
+  Node_targets targets;
+  targets.assign(size);
+  const Eigen::Matrix3d turn = pcs::rotation_exp(Vec3(0.1, 0.2, 0.3)).toRotationMatrix();
+  for (std::size_t i = 0; i < size; ++i) {
+    const Vec3& p = sphere.finer.rest[i];
+    constraints.handle_of_node[i] = p.z() > 0.8 ? 0 : p.z() < -0.8 ? 1 : free_node;
+    if (p.z() > 0.8)
+      targets.set(i, {0.5 * p, turn});
+  }
+  sphere.level.constrain(constraints);
+  sphere.level.set_targets(constraints, targets);
+  const Node_targets& found = sphere.level.targets();
+  BOOST_TEST_REQUIRE(found.size() == sphere.level.network().size());
+  for (std::size_t s = 0; s < found.size(); ++s) {
+    const Vec3& p = sphere.level.network().rest[s];
+    BOOST_TEST(found[s].offset == (p.z() > 0.8 ? Vec3(0.5 * p) : Vec3(0, 0, 0)));
+    BOOST_TEST(found.is_offset(s) == (p.z() > 0.8));
+  }
+  sphere.level.set_targets(constraints, Node_targets());
+  BOOST_TEST(sphere.level.targets().empty());
+}
+
+BOOST_AUTO_TEST_CASE(a_node_without_a_point_of_its_handle_has_the_mean_offset_of_its_region)
+{
+  Sphere sphere;
+  Node_constraints constraints = sphere.free_nodes({0.5});
+  Node_targets targets;
+  targets.assign(size);
+  for (std::size_t i = 0; i < size; ++i) // a point that is no node
+    if (std::count(sphere.level.network().rest.begin(),
+                   sphere.level.network().rest.end(),
+                   sphere.finer.rest[i]) == 0) {
+      constraints.handle_of_node[i] = 0;
+      targets.set(i, {Vec3(1, 2, 3), Eigen::Matrix3d::Identity()});
+      break;
+    }
+  sphere.level.constrain(constraints);
+  sphere.level.set_targets(constraints, targets);
+  std::size_t count = 0;
+  for (std::size_t s = 0; s < sphere.level.network().size(); ++s)
+    if (sphere.level.targets().is_offset(s)) {
+      BOOST_TEST((sphere.level.targets()[s].offset - Vec3(1, 2, 3)).norm() < 1e-12);
+      BOOST_TEST(sphere.level.constraints().handle_of_node[s] == 0);
+      ++count;
+    }
+  BOOST_TEST(count == 1u);
 }
 
 BOOST_AUTO_TEST_CASE(a_new_rest_shape_moves_the_nodes)

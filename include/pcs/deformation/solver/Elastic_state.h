@@ -23,6 +23,14 @@
 namespace pcs {
 namespace deformation {
 
+/// Targets of the links between handles with targets and other nodes, by half-edge. Such a link
+/// would otherwise resist the stretch of the handle, which is given.
+struct Link_targets
+{
+  std::vector<Vec3> shift;    ///< added to the turned link; empty without targets [L]
+  std::vector<double> length; ///< instead of the length at rest; negative for other links [L]
+};
+
 /// View of a network with the current positions of its nodes and the targets of its edges.
 struct Elastic_state
 {
@@ -35,6 +43,7 @@ struct Elastic_state
   const std::vector<Eigen::Matrix3d>& target;
   /// Growth of edges between scaled handles, `A_i`; empty if no handle is scaled. [-]
   const std::vector<Eigen::Matrix3d>& growth;
+  const Link_targets& link_targets;
 
   /// Weight of the frame in `deformation_gradient()`, relative to the spread of the edges. The
   /// frame determines the gradient along the surface normal, where there are no edges. [-]
@@ -71,15 +80,17 @@ struct Elastic_state
     return degree;
   }
 
-  Vec3 link_target(std::size_t i, std::size_t j, bool links_turn) const
+  /// Returns the target of the link `e` from node `i` to node `j`.
+  Vec3 link_target(std::size_t i, std::size_t j, std::size_t e, bool links_turn) const
   {
     if (links_turn) {
       const Vec3 edge = network.rest[i] - network.rest[j];
-      return 0.5 * (frame[i] * edge + frame[j] * edge);
+      const Vec3 turned = 0.5 * (frame[i] * edge + frame[j] * edge);
+      return link_targets.shift.empty() ? turned : Vec3(turned + link_targets.shift[e]);
     }
     const Vec3 present = position[i] - position[j];
     const double length = present.norm();
-    return length > 0 ? Vec3(rest_length(i, j) / length * present) : Vec3(Vec3::Zero());
+    return length > 0 ? Vec3(link_length(i, j, e) / length * present) : Vec3(Vec3::Zero());
   }
 
   /// Input of `Measure_edges`.
@@ -110,7 +121,7 @@ struct Elastic_state
         const std::size_t j = links.neighbor[e];
         if (j < i || !counts(j))
           continue;
-        const double error = (position[i] - position[j]).norm() - rest_length(i, j);
+        const double error = (position[i] - position[j]).norm() - link_length(i, j, e);
         energy += links.weight[e] * error * error;
       }
     return energy;
@@ -194,11 +205,19 @@ struct Elastic_state
     return result;
   }
 
-private:
-  double rest_length(std::size_t i, std::size_t j) const
+  /// Returns the link from node `j` to node `i` at rest, after the growth. [L]
+  Vec3 grown_link(std::size_t i, std::size_t j) const
   {
     const Vec3 edge = network.rest[i] - network.rest[j];
-    return growth.empty() ? edge.norm() : (0.5 * (growth[i] + growth[j]) * edge).norm();
+    return growth.empty() ? edge : Vec3(0.5 * (growth[i] + growth[j]) * edge);
+  }
+
+private:
+  double link_length(std::size_t i, std::size_t j, std::size_t e) const
+  {
+    if (!link_targets.length.empty() && link_targets.length[e] >= 0)
+      return link_targets.length[e];
+    return grown_link(i, j).norm();
   }
 };
 

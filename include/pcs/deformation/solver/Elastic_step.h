@@ -59,7 +59,8 @@ public:
             m_position,
             m_frame,
             is_stretched() ? m_target : m_frame,
-            m_scales.growth()};
+            m_scales.growth(),
+            m_loads.links()};
   }
 
   /// Factorises for the given constraints. The network must outlive its use here. Returns `false`
@@ -69,6 +70,7 @@ public:
     m_network = &network;
     m_constraints = std::move(constraints);
     m_targets.clear();
+    m_loads.clear();
     const bool is_regular = m_factors.factorize<ConcurrencyTag>(network, m_constraints, stiffness);
     m_position = network.rest;
     m_frame.assign(network.size(), Eigen::Matrix3d::Identity());
@@ -92,6 +94,7 @@ public:
   {
     m_transforms = &transforms;
     m_link_offsets = nullptr;
+    m_loads.clear();
     m_poisson_ratio = options.poisson_ratio;
     if (!is_further)
       m_stretch.assign(is_stretched() ? m_network->size() : 0, Eigen::Matrix3d::Identity());
@@ -107,12 +110,8 @@ public:
     if (!m_scales.growth().empty())
       find_room();
     m_link_offsets = link_offsets;
-    if (m_targets.empty())
-      m_loads.clear();
-    else {
-      place_constrained_nodes(*m_network, m_constraints, *m_transforms, m_targets, m_position);
-      m_loads.find(state(), rows(), transforms, m_targets);
-    }
+    if (!m_targets.empty())
+      find_loads();
   }
 
   /// Whether positions contain offsets by links of another network. If so, energies cannot be
@@ -298,6 +297,29 @@ private:
     }
     finish();
     return energy;
+  }
+
+  /// Finds the constant terms of targets. The positions of free nodes are unchanged.
+  void find_loads()
+  {
+    place_constrained_nodes(*m_network, m_constraints, *m_transforms, m_targets, m_position);
+    m_loads.find(state(), rows(), *m_transforms, m_targets);
+    if (!has_links())
+      return;
+    std::vector<Vec3> deviations(m_network->size(), Vec3::Zero()), with, without;
+    interpolate_deviations(deviations);
+    turn(deviations);
+    update_frames();
+    m_position_solver.without_links(state(), *m_transforms, m_targets, m_factors, with);
+    Node_targets targets;
+    std::swap(targets, m_targets);
+    m_rotation = m_field;
+    place_constrained_nodes(*m_network, m_constraints, *m_transforms, m_targets, m_position);
+    update_frames();
+    m_position_solver.without_links(state(), *m_transforms, m_targets, m_factors, without);
+    std::swap(targets, m_targets);
+    place_constrained_nodes(*m_network, m_constraints, *m_transforms, m_targets, m_position);
+    m_loads.find_link_targets(state(), *m_transforms, m_targets, with, without);
   }
 
   /// Finds the growth of bodies along the gradient of scale: the fraction with the least energy

@@ -62,7 +62,7 @@ public:
       if (!links.neighbor.empty())
         for (std::size_t e = links.first[i]; e < links.first[i + 1]; ++e) {
           const std::size_t j = links.neighbor[e];
-          b += links.weight[e] * state.link_target(i, j, links_turn);
+          b += links.weight[e] * state.link_target(i, j, e, links_turn);
           if (state.constraints.is_prescribed(j))
             b += links.weight[e] * position[j];
         }
@@ -80,6 +80,21 @@ public:
   const std::vector<Vec3>& directing() const { return m_directing; }
   /// Restores earlier values of `directing()`; \p directing is unspecified afterwards.
   void restore_directing(std::vector<Vec3>& directing) { m_directing.swap(directing); }
+
+  /// Computes the positions of all nodes without links, for the frames of `state`. One solve. [L]
+  void without_links(const Elastic_state& state,
+                     const std::vector<Similarity>& transforms,
+                     const Node_targets& targets,
+                     const Elastic_factors& factors,
+                     std::vector<Vec3>& result)
+  {
+    solve(factors, factors.field(), [&](std::size_t i) {
+      return surface_load(state, transforms, targets, i);
+    });
+    result = state.position;
+    for (std::size_t r = 0; r < m_rhs.size(); ++r)
+      result[factors.rows().node_of_row[r]] = m_rhs[r];
+  }
 
   /// Computes the displacements by the links: the positions of `state` minus the positions without
   /// links for the same frames. Empty without links. One solve. [L]

@@ -28,10 +28,14 @@ public:
   /// Loads of the rows in the system of the deviations; empty without targets.
   const std::vector<Vec3>& of_rows() const { return m_of_rows; }
 
+  const Link_targets& links() const { return m_links; }
+
   void clear()
   {
     m_held_energy = 0;
     m_of_rows.clear();
+    m_links.shift.clear();
+    m_links.length.clear();
   }
 
   /// \param state with the positions of the prescribed nodes
@@ -55,6 +59,34 @@ public:
         m_of_rows[r] += constraints.soft_weight(i, node_degree(graph, i)) *
                         rodrigues_from_rotation(targets.turn(i));
     }
+  }
+
+  /// Finds the targets of links between prescribed nodes and others. Their change by the targets is
+  /// the one without links.
+  /// \param with, without positions of all nodes without links, with and without targets
+  void find_link_targets(const Elastic_state& state,
+                         const std::vector<Similarity>& transforms,
+                         const Node_targets& targets,
+                         const std::vector<Vec3>& with,
+                         const std::vector<Vec3>& without)
+  {
+    const Node_constraints& constraints = state.constraints;
+    const auto& links = state.network.links;
+    m_links.shift.assign(links.neighbor.size(), Vec3::Zero());
+    m_links.length.assign(links.neighbor.size(), -1);
+    for (std::size_t i = 0; i < state.network.size(); ++i)
+      for (std::size_t e = links.first[i]; e < links.first[i + 1]; ++e) {
+        const std::size_t j = links.neighbor[e];
+        if (constraints.is_prescribed(i) == constraints.is_prescribed(j))
+          continue;
+        const std::size_t held = constraints.is_prescribed(i) ? i : j;
+        if (!targets.is_offset(held))
+          continue;
+        const auto handle = static_cast<std::size_t>(constraints.handle_of_node[held]);
+        m_links.shift[e] = (with[i] - with[j]) - (without[i] - without[j]);
+        m_links.length[e] =
+            (transforms[handle].rotation() * state.grown_link(i, j) + m_links.shift[e]).norm();
+      }
   }
 
 private:
@@ -88,6 +120,7 @@ private:
   }
 
   std::vector<Vec3> m_of_rows;
+  Link_targets m_links;
   double m_held_energy = 0;
 };
 
