@@ -136,6 +136,24 @@ BOOST_FIXTURE_TEST_CASE(every_selector_and_every_motion_reaches_its_target, Defo
   BOOST_TEST(largest_motion(input, result, with_status(input, 3)) > 0.01); // the others follow
 }
 
+BOOST_FIXTURE_TEST_CASE(targets_are_reached_in_the_order_of_the_indices, Deform_run)
+{
+  const std::vector<std::size_t> points = {1990, 1950, 1999, 1970, 1980};
+  Json targets = Json::array();
+  for (const std::size_t i : points) {
+    const Vec3 p = position(input, i);
+    targets.push_back({p.x() + .25 * double(i % 7), p.y() - .5, p.z() + 1});
+  }
+  Json handle = {{"select", {{"indices", points}}}, {"targets", targets}};
+  const Table result = deform(edit_of({fixed_foot, handle}));
+  for (std::size_t k = 0; k < points.size(); ++k)
+    for (int c = 0; c < 3; ++c)
+      BOOST_TEST(position(result, points[k])[c] == targets[k][std::size_t(c)].get<double>());
+  BOOST_TEST(largest_motion(input, result, with_status(input, 8)) > .1);
+  handle["softness"] = 1;
+  BOOST_TEST(largest_motion(result, deform(edit_of({fixed_foot, handle})), points) > 1e-4);
+}
+
 BOOST_FIXTURE_TEST_CASE(center_defaults_to_the_centroid, Deform_run)
 {
   const std::vector<std::size_t> head = with_status(input, 9);

@@ -143,6 +143,37 @@ BOOST_FIXTURE_TEST_CASE(a_selection_is_checked, Deform_run)
                  {"/handles/1/select/indices/0: there is no point"});
 }
 
+BOOST_FIXTURE_TEST_CASE(targets_are_checked, Deform_run)
+{
+  const auto refuses_targets = [&](const std::string& indices,
+                                   const std::string& targets,
+                                   const std::vector<std::string>& words) {
+    refuses_handle(*this,
+                   R"({"select": {"indices": )" + indices + R"(}, "targets": )" + targets + "}",
+                   words);
+  };
+  refuses_targets("[1990]", "7", {"/handles/1/targets: expected an array of positions"});
+  refuses_targets("[1990, 1995]",
+                  "[[0, 0, 0]]",
+                  {"/handles/1/targets: expected one position for each of the 2 indices, found 1"});
+  refuses_targets("[1990]", "[[0, 0]]", {"/handles/1/targets/0: expected [x, y, z]"});
+  refuses_targets("[1990, 1995, 1990]",
+                  "[[0, 0, 0], [0, 0, 1], [0, 0, 2]]",
+                  {"/handles/1/targets: point 1990 is listed twice"});
+  refuses_targets("[1990]", "[[0, 0, 1e300]]", {"/handles/1: ", "extents of the cloud away"});
+  refuses_handle(*this,
+                 "{" + head + R"(, "targets": [[0, 0, 0]]})",
+                 {"/handles/1/targets: needs select with indices"});
+  refuses_handle(*this,
+                 R"({"select": {"indices": [1990]}, "targets": [[0, 0, 0]], "scale": 2})",
+                 {"/handles/1: expected exactly one of fixed, matrix, targets"});
+  write("edit.json", R"({"handles": [{"select": {"indices": [1990]}, "targets": [[0, 0, 0]]}]})");
+  refuses(*this,
+          arguments + " --stream",
+          {"edit.json: /handles/0/targets: --stream keeps only some", "run without --stream"},
+          "targets of a stream");
+}
+
 BOOST_FIXTURE_TEST_CASE(a_motion_is_checked, Deform_run)
 {
   const auto refuses_motion = [&](const std::string& motion,

@@ -41,11 +41,13 @@ inline const char* edit_help()
      "rotate": {"axis": [x, y, z], "degrees": d, "center": [x, y, z]},
      "translate": [x, y, z], "scale": s},
     {"select": {"property": "status", "equals": 2}, "matrix": [16 numbers, row by row]},
-    {"select": {"indices": [0, 1, 2]}, "fixed": true, "softness": 1}
+    {"select": {"indices": [0, 1, 2]}, "fixed": true, "softness": 1},
+    {"select": {"indices": [7, 5]}, "targets": [[x, y, z], [x, y, z]]}
   ]}
 Scale comes first, then rotation, then translation. The center is the fixed point of
 rotation and scale; without it that is the centroid of the selected points. The matrix
-must be made of a rotation, one scale and a translation. Bounds are inclusive.
+must be made of a rotation, one scale and a translation. Bounds are inclusive. Targets are the
+new positions of the points in the order of indices; they exclude --stream.
 
 Files: PLY, LAS (LAZ if built with LASzip), OFF, OBJ, or text (xyz, txt, csv, asc, pts, pwn). The
 input may also be PCD, PTX, or compressed by gzip (.gz) if built with zlib. Order and properties of

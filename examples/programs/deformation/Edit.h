@@ -61,16 +61,20 @@ struct Rotation
   std::optional<Vec3> center; ///< also the fixed point of the scale; by default the centroid
 };
 
-/// Scale, then rotation, then translation; or a matrix instead. Without any of them the points keep
-/// their positions.
+/// Scale, then rotation, then translation; or a matrix or one target per point instead. Without any
+/// of them the points keep their positions.
 struct Motion
 {
   std::optional<double> scale;
   std::optional<Rotation> rotation;
   std::optional<Vec3> translation;
   std::optional<pcs::Similarity> matrix;
+  std::vector<Vec3> targets; ///< in the order of the `Index_list` of the handle
 
-  bool is_fixed() const { return !scale && !rotation && !translation && !matrix; }
+  bool is_fixed() const
+  {
+    return !scale && !rotation && !translation && !matrix && targets.empty();
+  }
 };
 
 struct Handle

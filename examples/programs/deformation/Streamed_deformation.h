@@ -173,6 +173,12 @@ private:
 
   void set_edit(Edit edit)
   {
+    for (const Handle& handle : edit.handles)
+      if (!handle.motion.targets.empty())
+        throw pcs::IO_error(edit.source,
+                            handle.pointer +
+                                "/targets: --stream keeps only some of the points; run without "
+                                "--stream, or give a motion");
     m_edit = std::move(edit);
     m_scan.emplace(*m_edit, m_empty);
   }

@@ -12,10 +12,13 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <string>
 #include <utility>
+#include <variant>
+#include <vector>
 
 namespace program {
 
@@ -115,12 +118,38 @@ inline pcs::Similarity read_matrix(const Json_value& json)
   }
 }
 
-inline Motion read_motion(const Json_value& handle)
+/// Reads one target for each listed point.
+inline std::vector<Vec3> read_targets(const Json_value& handle, const Selector& selector)
+{
+  const Json_value json = handle["targets"];
+  const auto* list = std::get_if<Index_list>(&selector);
+  if (list == nullptr)
+    json.fail("needs select with indices, whose order is that of the targets");
+  if (!json.json().is_array())
+    json.fail_expected("an array of positions [x, y, z]");
+  if (json.size() != list->indices.size())
+    json.fail("expected one position for each of the " + std::to_string(list->indices.size()) +
+              " indices, found " + std::to_string(json.size()));
+  std::vector<std::uint64_t> sorted = list->indices;
+  std::sort(sorted.begin(), sorted.end());
+  const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+  if (twice != sorted.end())
+    json.fail("point " + std::to_string(*twice) + " is listed twice in indices; list it once");
+  std::vector<Vec3> result;
+  for (std::size_t i = 0; i < json.size(); ++i)
+    result.push_back(json[i].vector_3());
+  return result;
+}
+
+inline Motion read_motion(const Json_value& handle, const Selector& selector)
 {
   const bool has_steps = handle.has("rotate") || handle.has("translate") || handle.has("scale");
-  if (handle.has("fixed") + handle.has("matrix") + has_steps != 1)
-    handle.fail("expected exactly one of fixed, matrix, or any of rotate, translate, scale");
+  if (handle.has("fixed") + handle.has("matrix") + handle.has("targets") + has_steps != 1)
+    handle.fail(
+        "expected exactly one of fixed, matrix, targets, or any of rotate, translate, scale");
   Motion motion;
+  if (handle.has("targets"))
+    motion.targets = read_targets(handle, selector);
   if (handle.has("fixed") && handle["fixed"].json() != Json(true))
     handle["fixed"].fail_expected("true");
   if (handle.has("matrix"))
@@ -139,10 +168,11 @@ inline Motion read_motion(const Json_value& handle)
 
 inline Handle read_handle(const Json_value& json)
 {
-  json.object({"select", "fixed", "matrix", "rotate", "translate", "scale", "softness"});
+  json.object({"select", "fixed", "matrix", "targets", "rotate", "translate", "scale", "softness"});
   if (!json.has("select"))
     json.fail("the key select is missing");
-  Handle handle{json.pointer(), read_selector(json["select"]), read_motion(json)};
+  Handle handle{json.pointer(), read_selector(json["select"]), Motion()};
+  handle.motion = read_motion(json, handle.selector);
   if (json.has("softness")) {
     handle.softness = json["softness"].number("a number >= 0");
     if (!(handle.softness >= 0))

@@ -21,9 +21,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <numeric>
 #include <stdexcept>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace program {
@@ -82,6 +84,19 @@ inline std::vector<char> fixed_points(const Edit& edit, const std::vector<std::u
   return is_fixed;
 }
 
+/// Returns the targets of a handle in the order of its points, which is increasing.
+inline std::vector<Vec3> sorted_targets(const Handle& handle)
+{
+  std::map<std::uint64_t, Vec3> target_of_point;
+  const std::vector<std::uint64_t>& points = std::get<Index_list>(handle.selector).indices;
+  for (std::size_t k = 0; k < points.size(); ++k)
+    target_of_point.emplace(points[k], handle.motion.targets[k]);
+  std::vector<Vec3> result;
+  for (const auto& entry : target_of_point)
+    result.push_back(entry.second);
+  return result;
+}
+
 template <class Session>
 void add_handles(Session& session, const Edited_points& cloud)
 {
@@ -92,7 +107,10 @@ void add_handles(Session& session, const Edited_points& cloud)
   for (std::size_t h = 0; h < indices.size(); ++h)
     try {
       const auto handle = session.add_handle(indices[h], cloud.edit.handles[h].softness);
-      session.set_transformation(handle, cloud.motions[h]);
+      if (cloud.edit.handles[h].motion.targets.empty())
+        session.set_transformation(handle, cloud.motions[h]);
+      else
+        session.set_targets(handle, sorted_targets(cloud.edit.handles[h]));
     } catch (const pcs::Invalid_input& e) {
       throw pcs::IO_error(cloud.edit.source,
                           cloud.edit.handles[h].pointer + ": " + e.what() + cloud.note);
