@@ -662,7 +662,7 @@ BOOST_AUTO_TEST_CASE(points_of_a_fragment_follow_the_targets_of_their_handle)
     rest.push_back(Vec3(1.3, .3, 5.5) + .005 * pcs_test::random_vector(random));
   }
   Points points = rest;
-  Session session(points, parameters(60));
+  Session session(points, parameters(20));
   session.add_handle(bar.low);
   Indices high = bar.high;
   high.push_back(speck[0]);
