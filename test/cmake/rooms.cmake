@@ -14,6 +14,7 @@ set(deformation_session
   handles/Handle_set.h
   handles/Target_field.h
   handles/constrain_body.h
+  handles/set_targets.h
   multigrid/Coarse_levels.h
   solver/Elastic_solver.h
   upsampling/Dirty_handles.h
@@ -23,6 +24,7 @@ set(deformation_session
   upsampling/Rest_positions.h
   upsampling/Target_corrections.h
   upsampling/Upsampling.h
+  upsampling/find_target_corrections.h
   upsampling/read_maps.h
   upsampling/write_points.h)
 set(deformation_handles body/Sample_regions.h body/Sampled_body.h)

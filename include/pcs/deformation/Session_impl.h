@@ -16,6 +16,7 @@
 #include <pcs/deformation/body/Sampled_body.h>
 #include <pcs/deformation/body/Sampled_body_impl.h>
 #include <pcs/deformation/handles/constrain_body.h>
+#include <pcs/deformation/handles/set_targets.h>
 #include <pcs/deformation/model/Affine_map.h>
 #include <pcs/deformation/solver/Elastic_solver.h>
 #include <pcs/deformation/upsampling/Upsampling.h>
@@ -129,7 +130,7 @@ void Session<ConcurrencyTag>::set_targets(std::size_t handle,
                                           const std::vector<Vec3>& targets,
                                           const char* function)
 {
-  m_state->handles.set_targets(m_state->body, handle, targets, function);
+  deformation::set_targets(m_state->body, handle, targets, function, m_state->handles);
 }
 
 template <class ConcurrencyTag>

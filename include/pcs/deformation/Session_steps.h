@@ -21,6 +21,7 @@
 #include <pcs/deformation/multigrid/Coarse_levels.h>
 #include <pcs/deformation/solver/Elastic_solver.h>
 #include <pcs/deformation/upsampling/Upsampling.h>
+#include <pcs/deformation/upsampling/find_target_corrections.h>
 #include <pcs/deformation/upsampling/read_maps.h>
 #include <pcs/internal/Stage_timer.h>
 #include <pcs/internal/parallel.h>
@@ -124,14 +125,15 @@ void set_node_targets(Session_state<Tag>& s)
 template <class Tag>
 void find_corrections(Session_state<Tag>& s, const Target_field& field)
 {
-  s.corrections.find(s.body,
-                     s.handles,
-                     s.shape_targets,
-                     s.local_transforms,
-                     field,
-                     s.sites,
-                     s.fades.of_sites(),
-                     exact_handles(s.handles));
+  find_target_corrections(s.body,
+                          s.handles,
+                          s.shape_targets,
+                          s.local_transforms,
+                          field,
+                          s.sites,
+                          s.fades.of_sites(),
+                          exact_handles(s.handles),
+                          s.corrections);
 }
 
 // ---- solving

@@ -9,7 +9,6 @@
 #include <pcs/core/errors.h>
 #include <pcs/deformation/body/Sampled_body.h>
 #include <pcs/deformation/handles/Handle_targets.h>
-#include <pcs/deformation/handles/fit_rigid_motion.h>
 #include <pcs/deformation/model/Elastic_network.h>
 #include <pcs/deformation/model/Harmonic_system.h>
 #include <pcs/deformation/model/Local_frame.h>
@@ -37,6 +36,9 @@ constexpr Node_constraint outside_region = -3;
 class Handle_set
 {
 public:
+  /// Scale and distance [extents] beyond which double precision cannot represent the shape.
+  static constexpr double largest_motion = 1e12;
+
   /// \param region indices of the region of interest, or null for all points. A site belongs
   /// to the region only if all of its points do
   template <class ConcurrencyTag>
@@ -183,38 +185,16 @@ public:
     m_targets[handle].reset();
   }
 
-  /// Sets one target for each point of the handle, in the order of `add()`, and the rigid motion
-  /// that fits them best. Throws `Invalid_input`, and changes nothing, if their number is another
-  /// one, a target is not finite or too far away, or points at the same place have different
-  /// targets.
-  template <class ConcurrencyTag>
-  void set_targets(const Sampled_body<ConcurrencyTag>& body,
+  /// Sets the targets of the handle, and the rigid motion that fits them best. Throws
+  /// `Invalid_input`, and changes nothing, like `set_transform()`.
+  void set_targets(const Local_frame& frame,
                    std::size_t handle,
-                   const std::vector<Vec3>& targets,
-                   const char* function)
+                   const Similarity& transform,
+                   std::shared_ptr<const Handle_targets> targets)
   {
-    const std::string of_handle = std::string(function) + ": handle " + std::to_string(handle);
-    check_targets(*m_points[handle], targets, body.frame, largest_motion, of_handle);
-    auto given = std::make_shared<Handle_targets>();
-    given->of_sites = targets_of_sites(*m_points[handle], targets, of_handle);
-    std::vector<Vec3> rest, target;
-    for (const auto site : m_points[handle]->sites)
-      rest.push_back(body.rest_of_site(site));
-    for (const Vec3& t : given->of_sites)
-      target.push_back(body.frame.to_local(t));
-    if (rest == target) {
-      set_transform(body.frame, handle, Similarity());
-      return;
-    }
-    const Similarity local = fit_rigid_motion(rest, target);
-    Similarity turn;
-    for (const auto& t : local.turns())
-      turn = Similarity::from_turn(t) * turn;
-    const Similarity motion = Similarity::from_translation(body.frame.unit * local.translation()) *
-                              Similarity::about(turn, body.frame.origin);
-    check_transform(body.frame, handle, motion);
-    m_transforms[handle] = motion;
-    m_targets[handle] = std::move(given);
+    check_transform(frame, handle, transform);
+    m_transforms[handle] = transform;
+    m_targets[handle] = std::move(targets);
   }
 
   /// Restores earlier handles, with the results of `points()`, `centroids()`, `transforms()` and
@@ -287,9 +267,6 @@ public:
   }
 
 private:
-  /// Scale and distance [extents] beyond which double precision cannot represent the shape.
-  static constexpr double largest_motion = 1e12;
-
   static bool is_used(const std::shared_ptr<const Handle_points>& points)
   {
     return points != nullptr;

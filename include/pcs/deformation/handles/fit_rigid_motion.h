@@ -10,9 +10,8 @@
 #include <pcs/deformation/model/Affine_map.h>
 
 #include <Eigen/Core>
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
-#include <Eigen/LU>
-#include <Eigen/SVD>
 
 #include <algorithm>
 #include <cmath>
@@ -36,15 +35,28 @@ inline Quaternion best_rotation(const Eigen::Matrix3d& covariance)
 {
   if (!(covariance.cwiseAbs().maxCoeff() > 0) || !covariance.allFinite())
     return Quaternion::Identity();
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance,
-                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Matrix3d u = svd.matrixU();
-  const Eigen::Matrix3d v = svd.matrixV();
-  if (!(svd.singularValues()[1] > smallest_determined_share * svd.singularValues()[0]))
-    return Quaternion::FromTwoVectors(Vec3(v.col(0)), Vec3(u.col(0)));
-  if ((u * v.transpose()).determinant() < 0)
-    u.col(2) = -u.col(2);
-  return Quaternion(Eigen::Matrix3d(u * v.transpose())).normalized();
+  const Eigen::Matrix3d c = covariance / covariance.cwiseAbs().maxCoeff();
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen; // right singular vectors
+  eigen.computeDirect(c.transpose() * c);
+  Vec3 v1 = eigen.eigenvectors().col(2);
+  for (int step = 0; step < 2; ++step) // the direct method is accurate to half of the digits
+    v1 = (c.transpose() * (c * v1)).normalized();
+  const Vec3 v2 =
+      (eigen.eigenvectors().col(1) - v1.dot(eigen.eigenvectors().col(1)) * v1).normalized();
+  const Vec3 u1 = (c * v1).normalized();
+  const Vec3 across = c * v2 - u1.dot(c * v2) * u1;
+  if (!(across.norm() > smallest_determined_share * (c * v1).norm()))
+    return Quaternion::FromTwoVectors(v1, u1);
+  const Vec3 u2 = across.normalized();
+  Eigen::Matrix3d u, v;
+  u << u1, u2, u1.cross(u2);
+  v << v1, v2, v1.cross(v2);
+  Quaternion q(Eigen::Matrix3d(u * v.transpose()));
+  for (int step = 0; step < 3; ++step) {
+    const Eigen::Matrix3d m = c * q.toRotationMatrix().transpose();
+    q = (rotation_exp(newton_turn(m, 0)) * q).normalized();
+  }
+  return q;
 }
 
 /*!

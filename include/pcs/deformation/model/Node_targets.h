@@ -8,6 +8,7 @@
 #include <pcs/core/Similarity.h>
 #include <pcs/core/rotations.h>
 #include <pcs/deformation/model/Affine_map.h>
+#include <pcs/deformation/model/Target_offset.h>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -17,29 +18,6 @@
 
 namespace pcs {
 namespace deformation {
-
-/*!
-  Motion of the surroundings of a place `x` of a handle, relative to the motion `T` of the handle: a
-  point `p` moves to `T(p) + offset + (linear - I) A (p - x)` with the linear part `A` of `T`.
-*/
-struct Target_offset
-{
-  Vec3 offset = Vec3::Zero();                           ///< [L]
-  Eigen::Matrix3d linear = Eigen::Matrix3d::Identity(); ///< [-]
-
-  /// Whether the surroundings move by `T`.
-  bool is_zero() const { return offset == Vec3::Zero() && linear == Eigen::Matrix3d::Identity(); }
-
-  /// Returns the offset at `p` instead of `x`; `turned` is the linear part of `T` times `p - x`.
-  Vec3 offset_at(const Vec3& turned) const { return offset + (linear * turned - turned); }
-
-  /// Moves `share` of the way to `other`.
-  void blend(double share, const Target_offset& other)
-  {
-    offset += share * (other.offset - offset);
-    linear += share * (other.linear - linear);
-  }
-};
 
 /// The offsets of all nodes of a network; empty if no handle has targets.
 class Node_targets
