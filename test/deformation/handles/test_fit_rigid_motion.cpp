@@ -7,6 +7,8 @@
 
 #include <boost/test/unit_test.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <random>
 
@@ -79,6 +81,23 @@ BOOST_AUTO_TEST_CASE(collinear_points_turn_by_the_angle_between_the_lines)
     const auto found = pcs::deformation::fit_rigid_motion(rest, target);
     BOOST_TEST(found.total_angle() == std::acos(from.dot(to)), boost::test_tools::tolerance(1e-6));
     BOOST_TEST(std::sqrt(sum_of_squares(found, rest, target)) < 1e-6);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(the_smallest_rotation_turns_one_direction_to_the_other)
+{
+  std::mt19937 random(4);
+  for (int attempt = 0; attempt < 20; ++attempt) {
+    const Vec3 from = pcs_test::random_direction(random);
+    const Vec3 near = (from + 1e-9 * pcs_test::random_vector(random)).normalized();
+    for (const Vec3& to :
+         {pcs_test::random_direction(random), from, near, Vec3(-near), Vec3(-from)}) {
+      const auto q = pcs::deformation::smallest_rotation(from, to);
+      BOOST_TEST((q * from - to).norm() < 1e-9);
+      BOOST_TEST(std::abs(q.norm() - 1) < 1e-12);
+      BOOST_TEST(pcs::rotation_log(q).norm() <=
+                 std::acos(std::clamp(from.dot(to), -1., 1.)) + 1e-6);
+    }
   }
 }
 

@@ -24,6 +24,19 @@ namespace deformation {
 /// Singular values of a covariance below this fraction of the largest one count as zero. [-]
 constexpr double smallest_determined_share = 1e-10;
 
+/// Returns the smallest rotation that turns the unit vector `from` to `to`; within 1e-6 rad of
+/// opposite vectors, a rotation that may be larger by as much.
+inline Quaternion smallest_rotation(const Vec3& from, const Vec3& to)
+{
+  const Vec3 half = from + to;
+  if (half.squaredNorm() < 1e-12) { // to the opposite of `to`, and half a turn across it
+    const Vec3 axis = to.unitOrthogonal();
+    return Quaternion(0, axis.x(), axis.y(), axis.z()) * smallest_rotation(from, -to);
+  }
+  const Vec3 middle = half.normalized(), axis = from.cross(middle);
+  return Quaternion(from.dot(middle), axis.x(), axis.y(), axis.z()).normalized();
+}
+
 /*!
   Returns the rotation `R` that maximises `trace(R^T covariance)`, for the covariance
   `sum (y - mean y)(x - mean x)^T` of deformed and original positions (W. Kabsch, "A solution for
@@ -46,7 +59,7 @@ inline Quaternion best_rotation(const Eigen::Matrix3d& covariance)
   const Vec3 u1 = (c * v1).normalized();
   const Vec3 across = c * v2 - u1.dot(c * v2) * u1;
   if (!(across.norm() > smallest_determined_share * (c * v1).norm()))
-    return Quaternion::FromTwoVectors(v1, u1);
+    return smallest_rotation(v1, u1);
   const Vec3 u2 = across.normalized();
   Eigen::Matrix3d u, v;
   u << u1, u2, u1.cross(u2);
