@@ -10,6 +10,8 @@
 #include "common/up_direction.h"
 #include "scan/rays_without_return.h"
 #include "scan/tree_foot.h"
+#include "tiling/Tile_result.h"
+#include "tiling/Tile_segmentation.h"
 #include <pcs/IO/internal/extensions.h>
 #include <pcs/IO/points/Point_table.h>
 #include <pcs/IO/read_points.h>
@@ -32,6 +34,8 @@
 #include <functional>
 #include <iostream>
 #include <memory>
+#include <optional>
+#include <set>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -41,7 +45,8 @@ namespace program {
 
 struct Options
 {
-  std::string input, folder, points, report, up = "z";
+  std::string input, folder, points, report, tile_results;
+  std::optional<std::string> up;
   double breast_height = pcs::default_breast_height;
   std::size_t min_points = 1000;
   bool do_keep_ground = false, is_quiet = false;
@@ -55,9 +60,12 @@ Folder: DIR/SCAN_1.ply, DIR/SCAN_2.ply, ..., trees with the thickest stems first
 properties of their points and the foot of the tree as a comment. extract_tree_skeleton reads the
 foot, and processes all files with its own --folder.
 Points: the scan with the property `tree` (-1: ground, or not part of a tree).
+Tile results: for a tile of tile_points, in the folder of its tiles.json. DIR/NAME.ply has the
+points of the core with all properties and `tree`, DIR/NAME.json the trees with their feet, and
+whether they touch the outer rim of the buffer. A tile without trees is a result, too.
 Ray clouds (PLY with `time` and `alpha`): rays without return, whose alpha is 0, are left out.
 
-Exit codes: 0 success, 1 bad input, bad usage or no tree, 2 internal error.)";
+Exit codes: 0 success, 1 bad input, bad usage or no tree (except in a tile), 2 internal error.)";
 }
 
 void declare(CLI::App& app, Options& options)
@@ -67,12 +75,16 @@ void declare(CLI::App& app, Options& options)
   app.add_option("--input", options.input, "the scan of a stand")->required();
   app.add_option("--folder", options.folder, "folder for one file per tree");
   app.add_option("--points", options.points, "the scan with the tree label of every point");
+  app.add_option("--tile-results",
+                 options.tile_results,
+                 "folder for the results of a tile of tile_points");
   app.add_option("--report", options.report, "trees, counts and seconds (JSON)");
   app.add_option("--min-points", options.min_points, "trees with fewer points get no file")
       ->capture_default_str();
-  app.add_option("--up", options.up, "up direction: x, y, z, -x, -y or -z")
-      ->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}))
-      ->capture_default_str();
+  app.add_option("--up",
+                 options.up,
+                 "up direction: x, y, z, -x, -y or -z; default: that of the tile results, else z")
+      ->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}));
   app.add_option("--breast-height",
                  options.breast_height,
                  "height of the diameter of stems, which scales all size limits")
@@ -136,15 +148,15 @@ segment(const pcs::IO::Point_table& table, const Options& options, std::vector<s
     line.show("trees", f);
     return true;
   };
-  const pcs::Segmentation_report report =
-      pcs::segment_trees(indices,
-                         boost::make_iterator_property_map(tree_of_point.begin(), identity),
-                         pcs::parameters::point_map(
-                             boost::make_iterator_property_map(table.points().begin(), identity))
-                             .up_direction(up_direction<pcs::IO::Point_table::Kernel>(options.up))
-                             .breast_height(options.breast_height)
-                             .do_remove_ground(!options.do_keep_ground)
-                             .callback(callback));
+  const pcs::Segmentation_report report = pcs::segment_trees(
+      indices,
+      boost::make_iterator_property_map(tree_of_point.begin(), identity),
+      pcs::parameters::point_map(
+          boost::make_iterator_property_map(table.points().begin(), identity))
+          .up_direction(up_direction<pcs::IO::Point_table::Kernel>(options.up.value_or("z")))
+          .breast_height(options.breast_height)
+          .do_remove_ground(!options.do_keep_ground)
+          .callback(callback));
   line.clear();
   trees.reserve(n);
   for (const std::size_t t : tree_of_point)
@@ -169,14 +181,66 @@ void write_trees(const pcs::IO::Point_table& table,
     }
 }
 
-void run(const Options& options)
+/// Prepares the results of a tile; null if they are not wanted. Sets the up direction.
+std::unique_ptr<Tile_segmentation> open_tile(Options& options, Distinct_files& files)
 {
-  if (options.folder.empty() && options.points.empty() && options.report.empty())
-    throw pcs::Invalid_input("one of --folder, --points and --report is required");
+  if (options.tile_results.empty())
+    return nullptr;
+  const std::string name = std::filesystem::path(options.input).filename().string();
+  files.add_output(points_of_result(options.tile_results, name));
+  files.add_output(trees_of_result(options.tile_results, name));
+  make_folder(options.tile_results);
+  auto tile = std::make_unique<Tile_segmentation>(options.input, options.tile_results);
+  if (options.up.value_or(tile->up()) != tile->up())
+    throw pcs::Invalid_input("--up is " + *options.up + ", but the tiles were made with " +
+                             tile->up() + "; leave out --up");
+  options.up = tile->up();
+  return tile;
+}
+
+/// Segments the points. If there are too few points for a tree, a tile has none.
+pcs::Segmentation_report segment_scan(const pcs::IO::Point_table& table,
+                                      const Options& options,
+                                      std::vector<std::int32_t>& trees)
+{
+  std::set<pcs::IO::Point_table::Point_3> places;
+  for (const auto& p : table.points())
+    if (places.size() < pcs::lowest_number_of_scan_points)
+      places.insert(p);
+  if (options.tile_results.empty() || places.size() == pcs::lowest_number_of_scan_points)
+    return segment(table, options, trees);
+  pcs::Segmentation_report report;
+  report.number_of_points = report.number_of_unassigned_points = table.number_of_points();
+  report.breast_height = options.breast_height;
+  trees.assign(table.number_of_points(), -1);
+  return report;
+}
+
+/// Writes the results of a tile. Returns warnings.
+std::vector<std::string> write_tile(const Tile_segmentation& tile,
+                                    const pcs::IO::Point_table& table,
+                                    const std::vector<std::int32_t>& trees,
+                                    const pcs::Segmentation_report& report)
+{
+  Report_file file(tile.path_of_trees());
+  const Tile_result result = tile.write_points(table, trees, report);
+  const std::vector<std::string> warnings = Tile_segmentation::warnings(result);
+  nlohmann::ordered_json json = to_json(result);
+  json["warnings"] = warnings;
+  file.commit(json);
+  return warnings;
+}
+
+void run(Options& options)
+{
+  if (options.folder.empty() && options.points.empty() && options.report.empty() &&
+      options.tile_results.empty())
+    throw pcs::Invalid_input("one of --folder, --points, --report and --tile-results is required");
   Distinct_files files;
   files.add_input(options.input);
   files.add_output(options.points);
   files.add_output(options.report);
+  const std::unique_ptr<Tile_segmentation> tile = open_tile(options, files);
   std::unique_ptr<Report_file> report_file;
   if (!options.report.empty())
     report_file = std::make_unique<Report_file>(options.report);
@@ -195,17 +259,20 @@ void run(const Options& options)
   }
 
   std::vector<std::int32_t> trees;
-  const pcs::Segmentation_report report = segment(table, options, trees);
-  if (report.status != pcs::Status::converged)
+  const pcs::Segmentation_report report = segment_scan(table, options, trees);
+  if (report.status != pcs::Status::converged && !tile)
     throw pcs::Invalid_input(options.input + ": no stem was found in this scan (" +
                              std::to_string(report.number_of_points) + " points)");
+  nlohmann::ordered_json json = to_json(options, report);
+  if (tile)
+    for (const std::string& warning : write_tile(*tile, table, trees, report))
+      json["warnings"].push_back(warning);
   if (!options.folder.empty())
     write_trees(table, options, report, trees);
   if (!options.points.empty()) {
     table.add_property("tree", std::move(trees));
     pcs::IO::write_points(options.points, table);
   }
-  nlohmann::ordered_json json = to_json(options, report);
   for (const std::string& warning : table.schema().warnings)
     json["warnings"].push_back(warning);
   if (number_of_empty_rays > 0)

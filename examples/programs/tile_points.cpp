@@ -9,6 +9,7 @@
 #include "tiling/Point_files.h"
 #include "tiling/Tile_files.h"
 #include "tiling/Tile_tree.h"
+#include "tiling/horizontal.h"
 #include <pcs/IO/points/Point_table.h>
 #include <pcs/core/errors.h>
 #include <pcs/internal/Stopwatch.h>
@@ -72,7 +73,8 @@ Files are read twice, and once more for every further --open-files tiles.
 
 For example:
   tile_points --input plot_a.laz plot_b.laz --folder tiles
-  segment_trees --input tiles/tile_0001.ply --points labelled_0001.ply
+  segment_trees --input tiles/tile_0001.ply --tile-results segmented
+  (the same for all other tiles)
 
 Exit codes: 0 success, 1 bad input or usage, 2 internal error.)";
 }
@@ -194,11 +196,6 @@ std::string warning_of_large_tiles(const Tile_tree& tree, const Options& options
          " have more points than --tile-points, up to " + std::to_string(most) +
          (cell > options.cell ? "; the cell was enlarged because the plot is large"
                               : "; reduce --cell, or thin the scan");
-}
-
-Json to_json(const Box_2& box)
-{
-  return {{"low", box.low}, {"high", box.high}};
 }
 
 Json to_json(const Point_files& files)

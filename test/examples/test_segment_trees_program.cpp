@@ -54,6 +54,16 @@ struct Stand_run : Program_run
     table.add_property("number", number);
     pcs::IO::write_points(path("stand.ply"), table);
   }
+
+  /// Runs another program in the folder.
+  int run_other(const std::string& name, const std::string& arguments)
+  {
+    const std::string own = program;
+    program = PCS_TEST_PROGRAMS "/" + name;
+    const int code = run(arguments);
+    program = own;
+    return code;
+  }
 };
 
 } // namespace
@@ -161,6 +171,121 @@ BOOST_AUTO_TEST_CASE(rays_without_return_are_left_out)
   for (const auto& tree : json["trees"])
     BOOST_TEST(tree["height"].get<double>() < 90);
   BOOST_TEST(pcs::IO::read_points(path("p.ply")).number_of_points() == n - (n + 99) / 100);
+}
+
+BOOST_AUTO_TEST_CASE(a_tile_gives_the_trees_of_its_core)
+{
+  BOOST_TEST_REQUIRE(
+      run_other("tile_points", "--input stand.ply --folder tiles --tile-points 2500 --buffer 1") ==
+          0,
+      err);
+  const auto manifest = nlohmann::json::parse(content("tiles/tiles.json"));
+  BOOST_TEST_REQUIRE(manifest["tiles"].size() > 1u);
+  std::size_t number_of_own_feet = 0, number_of_cut_trees = 0;
+  for (const auto& row : manifest["tiles"]) {
+    const std::string name = row["file"];
+    BOOST_TEST_REQUIRE(run("--input tiles/" + name +
+                           " --tile-results segmented --points all.ply --report report.json") == 0,
+                       err);
+    const auto all = pcs::IO::read_points(path("all.ply"));
+    const auto core = pcs::IO::read_points(path("segmented/" + name));
+    const auto json =
+        nlohmann::json::parse(content("segmented/" + name.substr(0, name.size() - 4) + ".json"));
+    const auto whole = nlohmann::json::parse(content("report.json"));
+    const auto& is_core = all.property<std::uint8_t>("is_core");
+    const auto& tree = all.property<std::int32_t>("tree");
+    std::vector<std::size_t> rows;
+    std::vector<std::size_t> core_points(whole["trees"].size(), 0);
+    std::vector<bool> is_at_rim(whole["trees"].size(), false);
+    for (std::size_t i = 0; i < is_core.size(); ++i) {
+      if (is_core[i] == 1)
+        rows.push_back(i);
+      if (tree[i] < 0)
+        continue;
+      const auto t = static_cast<std::size_t>(tree[i]);
+      core_points[t] += is_core[i];
+      for (int axis = 0; axis < 2; ++axis) {
+        const double low = row["buffered"]["low"][std::size_t(axis)],
+                     high = row["buffered"]["high"][std::size_t(axis)];
+        double plot_low = low, plot_high = high;
+        for (const auto& other : manifest["tiles"]) {
+          plot_low = std::min(plot_low, other["core"]["low"][std::size_t(axis)].get<double>());
+          plot_high = std::max(plot_high, other["core"]["high"][std::size_t(axis)].get<double>());
+        }
+        const double x = all.points()[i][axis];
+        if ((plot_low < low && x < low + 0.13) || (plot_high > high && x > high - 0.13))
+          is_at_rim[t] = true;
+      }
+    }
+    const auto expected = all.select(rows);
+    BOOST_TEST((core.points() == expected.points()));
+    for (const char* property : {"number", "index", "tree"})
+      BOOST_TEST((core.property_values(property) == expected.property_values(property)), property);
+    BOOST_TEST(!core.has_property("is_core"));
+    BOOST_TEST(json["core"] == row["core"]);
+    BOOST_TEST(json["core_points"] == row["core_points"]);
+    BOOST_TEST_REQUIRE(json["trees"].size() == whole["trees"].size());
+    for (std::size_t t = 0; t < core_points.size(); ++t) {
+      const auto& found = json["trees"][t];
+      BOOST_TEST(found["foot"] == whole["trees"][t]["foot"]);
+      BOOST_TEST(found["core_points"] == core_points[t]);
+      BOOST_TEST(found["is_at_rim"] == bool(is_at_rim[t]));
+      bool is_own = true;
+      for (std::size_t axis = 0; axis < 2; ++axis)
+        is_own = is_own && row["core"]["low"][axis] <= found["foot"][axis] &&
+                 found["foot"][axis] < row["core"]["high"][axis];
+      BOOST_TEST(found["is_foot_in_core"] == is_own);
+      number_of_own_feet += is_own;
+      number_of_cut_trees += is_at_rim[t] && core_points[t] > 0;
+      if (is_at_rim[t] && core_points[t] > 0)
+        BOOST_TEST(err.find("larger --buffer") != std::string::npos, err);
+    }
+  }
+  BOOST_TEST(number_of_own_feet >= 2u);
+  BOOST_TEST(number_of_cut_trees > 0u);
+}
+
+BOOST_AUTO_TEST_CASE(a_tile_without_trees_is_a_result)
+{
+  write("few.xyz", "0 0 0\n1 0 0\n1 0 0\n0 1 0\n");
+  BOOST_TEST_REQUIRE(run_other("tile_points", "--input few.xyz --folder few --buffer 1") == 0, err);
+  BOOST_TEST_REQUIRE(run("--input few/tile_0001.ply --tile-results results") == 0, err);
+  const auto labelled = pcs::IO::read_points(path("results/tile_0001.ply"));
+  BOOST_TEST((labelled.property<std::int32_t>("tree") == std::vector<std::int32_t>(4, -1)));
+  BOOST_TEST(nlohmann::json::parse(content("results/tile_0001.json"))["trees"].empty());
+}
+
+BOOST_AUTO_TEST_CASE(what_is_no_tile_is_refused)
+{
+  const auto refuses = [&](const std::string& arguments, const std::string& word) {
+    const int code = run(arguments);
+    BOOST_TEST(code == 1, arguments << ": exit code " << code);
+    BOOST_TEST(err.find(word) != std::string::npos, word << " in " << err);
+  };
+  refuses("--input stand.ply --tile-results results", "tiles.json");
+  BOOST_TEST_REQUIRE(
+      run_other("tile_points", "--input stand.ply --folder tiles --tile-points 2500 --buffer 1") ==
+          0,
+      err);
+  const std::string tile = content("tiles/tile_0001.ply");
+  refuses("--input tiles/tile_0001.ply --tile-results tiles", "same file");
+  refuses("--input tiles/tile_0001.ply --tile-results results --up x", "--up");
+  refuses("--input tiles/tile_0001.ply --tile-results stand.ply", "directory");
+  std::filesystem::copy_file(path("stand.ply"), path("tiles/other.ply"));
+  refuses("--input tiles/other.ply --tile-results results", "no tile other.ply");
+  std::filesystem::copy_file(path("tiles/tile_0002.ply"),
+                             path("tiles/tile_0001.ply"),
+                             std::filesystem::copy_options::overwrite_existing);
+  refuses("--input tiles/tile_0001.ply --tile-results results", "make the tiles again");
+  std::filesystem::copy_file(path("stand.ply"),
+                             path("tiles/tile_0001.ply"),
+                             std::filesystem::copy_options::overwrite_existing);
+  refuses("--input tiles/tile_0001.ply --tile-results results", "it is no tile");
+  write("tiles/tile_0001.ply", tile);
+  write("tiles/tiles.json", "{\"points\": 3}");
+  refuses("--input tiles/tile_0001.ply --tile-results results", "tiles.json: top level");
+  BOOST_TEST(!exists("results/tile_0001.ply"));
+  BOOST_TEST(!exists("results/tile_0001.json"));
 }
 
 BOOST_AUTO_TEST_CASE(small_trees_get_no_file)

@@ -119,7 +119,8 @@ private:
 };
 
 /// Parses a file. Throws `pcs::IO_error` if the file is not JSON, or an object repeats a key.
-inline Json read_json(const std::string& path)
+/// `expected`: what the file should hold.
+inline Json read_json(const std::string& path, const std::string& expected)
 {
   std::ifstream in(path, std::ios::binary);
   if (!in)
@@ -128,7 +129,7 @@ inline Json read_json(const std::string& path)
   content << in.rdbuf(); // unlike iterators, does not throw for a folder
   const std::string text = content.str();
   if (text.empty())
-    throw pcs::IO_error(path, "is empty or cannot be read, expected an edit in JSON");
+    throw pcs::IO_error(path, "is empty or cannot be read, expected " + expected + " in JSON");
 
   std::vector<std::set<std::string>> keys; // keys of the open objects
   const auto refuse_duplicates = [&](int, Json::parse_event_t event, Json& value) {

@@ -184,7 +184,7 @@ inline Handle read_handle(const Json_value& json)
 /// Reads an edit. Throws `pcs::IO_error` with the file, the JSON pointer, and the expected value.
 inline Edit read_edit(const std::string& path)
 {
-  const Json json = read_json(path);
+  const Json json = read_json(path, "an edit");
   const Json_value top(json, path);
   top.object({"handles"});
   if (!top.has("handles"))

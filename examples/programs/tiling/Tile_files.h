@@ -8,6 +8,7 @@
 #include "common/check_output.h"
 #include "tiling/Point_files.h"
 #include "tiling/Tile_tree.h"
+#include "tiling/horizontal.h"
 #include <pcs/IO/Point_writer.h>
 #include <pcs/IO/points/Point_schema.h>
 #include <pcs/IO/points/Point_table.h>
@@ -25,12 +26,6 @@
 #include <vector>
 
 namespace program {
-
-/// Returns the two coordinates other than the one along `axis_up`, in their order.
-inline Position_2 horizontal(const pcs::IO::Point_table::Point_3& p, std::size_t axis_up)
-{
-  return {p[axis_up == 0 ? 1 : 0], p[axis_up == 2 ? 1 : 2]};
-}
 
 /*!
   Tiles have the shared properties of the inputs, and two more, which replace properties of the same
