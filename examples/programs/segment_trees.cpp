@@ -62,7 +62,8 @@ foot, and processes all files with its own --folder.
 Points: the scan with the property `tree` (-1: ground, or not part of a tree).
 Tile results: for a tile of tile_points, in the folder of its tiles.json. DIR/NAME.ply has the
 points of the core with all properties and `tree`, DIR/NAME.json the trees with their feet, and
-whether they touch the outer rim of the buffer. A tile without trees is a result, too.
+whether they touch the outer rim of the buffer. A tile without trees is a result, too. merge_tiles
+merges the results of all tiles.
 Ray clouds (PLY with `time` and `alpha`): rays without return, whose alpha is 0, are left out.
 
 Exit codes: 0 success, 1 bad input, bad usage or no tree (except in a tile), 2 internal error.)";
@@ -77,7 +78,7 @@ void declare(CLI::App& app, Options& options)
   app.add_option("--points", options.points, "the scan with the tree label of every point");
   app.add_option("--tile-results",
                  options.tile_results,
-                 "folder for the results of a tile of tile_points");
+                 "folder for the results of a tile, which merge_tiles reads");
   app.add_option("--report", options.report, "trees, counts and seconds (JSON)");
   app.add_option("--min-points", options.min_points, "trees with fewer points get no file")
       ->capture_default_str();

@@ -75,6 +75,7 @@ For example:
   tile_points --input plot_a.laz plot_b.laz --folder tiles
   segment_trees --input tiles/tile_0001.ply --tile-results segmented
   (the same for all other tiles)
+  merge_tiles --tiles tiles/tiles.json --results segmented --table trees.csv
 
 Exit codes: 0 success, 1 bad input or usage, 2 internal error.)";
 }

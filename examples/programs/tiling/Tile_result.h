@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The trees of a tile, as segment_trees writes them.
+// The trees of a tile, as segment_trees writes them and merge_tiles reads them.
 
 #ifndef PCS_EXAMPLES_PROGRAMS_TILING_TILE_RESULT_H
 #define PCS_EXAMPLES_PROGRAMS_TILING_TILE_RESULT_H

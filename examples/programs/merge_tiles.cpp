@@ -1,0 +1,387 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Program: merges the segmented tiles of a plot.
+
+#include "common/Distinct_files.h"
+#include "common/Report_file.h"
+#include "common/check_output.h"
+#include "common/run_program.h"
+#include "tiling/Labelled_tiles.h"
+#include "tiling/Ordered_points.h"
+#include "tiling/Plot_trees.h"
+#include "tiling/Tile_manifest.h"
+#include "tiling/Tile_result.h"
+#include "tiling/Tree_files.h"
+#include <pcs/IO/points/Point_table.h>
+#include <pcs/core/errors.h>
+#include <pcs/internal/Stopwatch.h>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <iostream>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+namespace program {
+
+using Ordered_json = nlohmann::ordered_json;
+
+/// The tolerance of feet in breast heights: feet of one tree in two tiles differ by centimetres,
+/// stems of two trees by more [-].
+constexpr double tolerance_by_breast_height = 0.25;
+
+struct Options
+{
+  std::string tiles, results, table, points, folder, report;
+  std::optional<double> tolerance;
+  std::size_t min_points = 1000;
+  std::int64_t open_files = 100;
+  bool is_quiet = false;
+};
+
+const char* help()
+{
+  return R"(Tiles: tiles.json of tile_points, beside the tiles.
+Results: the folder of segment_trees --tile-results, the same for all tiles.
+Trees: a tree belongs to the tile whose core holds its foot. A tree of another tile is the tree of
+that tile with the nearest foot, by horizontal distance, at most --tolerance away. A tree without
+such a foot is unmatched: its points have no tree, and the report lists it. Trees are numbered from
+0 by descending radius, so the numbers do not depend on the order of the tiles.
+Table: one row per tree (CSV): tree, x, y, z (of the foot), radius, diameter_at_breast_height,
+height, points, tile, parts (tiles whose cores have points of it), is_at_rim (it touches the outer
+rim of the buffer of its tile), cut_parts (other tiles where it does), file.
+Points: all points of the plot in the order of `index`, with the property `tree` (-1: none).
+Folder: DIR/tree_000000.ply, ..., one file per tree with the foot as a comment, for
+extract_tree_skeleton.
+A missing or damaged result is named, and the other tiles are merged. The points of its core are
+taken from the tile, without a tree.
+Memory: the trees of all tiles, and some 500,000 points.
+
+For example:
+  tile_points --input plot_a.laz plot_b.laz --folder tiles
+  segment_trees --input tiles/tile_0001.ply --tile-results segmented
+  (the same for all other tiles)
+  merge_tiles --tiles tiles/tiles.json --results segmented --table trees.csv --folder trees
+
+Exit codes: 0 success, 1 bad input or usage, or a result is missing or damaged, 2 internal error.)";
+}
+
+void declare(CLI::App& app, Options& options)
+{
+  app.footer(help());
+  app.set_version_flag("--version", PCS_PROGRAM_VERSION);
+  app.add_option("--tiles", options.tiles, "tiles.json of the plot")->required();
+  app.add_option("--results", options.results, "folder of the results of all tiles")->required();
+  app.add_option("--table", options.table, "the trees of the plot (CSV)");
+  app.add_option("--points", options.points, "all points with their tree");
+  app.add_option("--folder", options.folder, "folder for one file per tree");
+  app.add_option("--report", options.report, "counts, missing tiles, unmatched trees (JSON)");
+  app.add_option("--tolerance",
+                 options.tolerance,
+                 "largest distance of feet of one tree; default: a quarter of the breast height");
+  app.add_option("--min-points", options.min_points, "trees with fewer points get no file")
+      ->capture_default_str();
+  app.add_option("--open-files", options.open_files, "files that are open at the same time")
+      ->check(CLI::Range(std::int64_t(2), std::int64_t(10000)))
+      ->capture_default_str();
+  app.add_flag("--quiet", options.is_quiet, "print errors only");
+}
+
+/// Checks the options further than CLI11 can. Throws `pcs::Invalid_input`.
+void check(const Options& options)
+{
+  if (options.table.empty() && options.points.empty() && options.folder.empty() &&
+      options.report.empty())
+    throw pcs::Invalid_input("one of --table, --points, --folder and --report is required");
+  if (options.tolerance && !(*options.tolerance >= 0 && std::isfinite(*options.tolerance)))
+    throw pcs::Invalid_input("--tolerance is " + std::to_string(*options.tolerance) +
+                             ", expected a length of 0 or more");
+  if (!std::filesystem::is_directory(options.results))
+    throw pcs::IO_error(options.results, "is not a directory, expected the results of the tiles");
+}
+
+/// Refuses results that would replace inputs, or each other.
+void check_files(const Options& options, const Tile_manifest& manifest)
+{
+  Distinct_files distinct;
+  distinct.add_input(options.tiles);
+  for (std::size_t t = 0; t < manifest.tiles().size(); ++t) {
+    const std::string& name = manifest.tiles()[t].file;
+    distinct.add_input(manifest.path_of(t));
+    distinct.add_input(points_of_result(options.results, name));
+    distinct.add_input(trees_of_result(options.results, name));
+  }
+  distinct.add_output(options.table);
+  distinct.add_output(options.points);
+  distinct.add_output(options.report);
+}
+
+void make_folder(const std::string& folder)
+{
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!std::filesystem::is_directory(folder))
+    throw pcs::IO_error(folder, "is not a directory and cannot be made one");
+}
+
+/// A tile whose result could not be used.
+struct Failure
+{
+  std::string tile, reason;
+};
+
+/// The merged plot, and its description.
+struct Merged_plot
+{
+  Merged_plot(const Tile_manifest& manifest, const Options& options)
+    : tiles(manifest, options.results, [&](std::size_t t, const std::string& reason) {
+        failures.push_back({manifest.tiles()[t].file, reason});
+      })
+  {
+    double breast_height = 0;
+    for (const auto& result : tiles.results())
+      if (result)
+        breast_height = std::max(breast_height, result->breast_height);
+    if (!(breast_height > 0))
+      throw pcs::IO_error(options.results,
+                          "has no result of a tile of " + options.tiles + "; " +
+                              failures.front().tile + ": " + failures.front().reason);
+    tolerance = options.tolerance.value_or(tolerance_by_breast_height * breast_height);
+    trees = std::make_unique<Plot_trees>(manifest, tiles.results(), tolerance);
+    count_points(manifest);
+  }
+
+  std::vector<Failure> failures; ///< filled while the tiles are read
+  Labelled_tiles tiles;
+  double tolerance = 0; ///< of feet [L]
+  std::unique_ptr<Plot_trees> trees;
+  std::vector<std::uint64_t> points; ///< of each tree
+  std::vector<double> heights;       ///< of each tree [L]
+  std::uint64_t number_of_points = 0, unassigned_points = 0, unmatched_points = 0;
+  std::size_t number_of_results = 0; ///< tiles with a result
+
+private:
+  void count_points(const Tile_manifest& manifest)
+  {
+    const double sign = manifest.up().front() == '-' ? -1 : 1;
+    points.assign(trees->trees().size(), 0);
+    heights.assign(trees->trees().size(), 0);
+    std::uint64_t assigned = 0;
+    for (std::size_t t = 0; t < manifest.tiles().size(); ++t) {
+      if (tiles.source(t) != Labelled_tiles::Source::none)
+        number_of_points += manifest.tiles()[t].number_of_core_points;
+      number_of_results += tiles.source(t) == Labelled_tiles::Source::result;
+      for (std::size_t k = 0; k < tiles.parts(t).size(); ++k) {
+        const Part_of_core& part = tiles.parts(t)[k];
+        if (trees->trees_of_tile(t)[k] == Plot_trees::no_tree) {
+          unmatched_points += part.number_of_points;
+          continue;
+        }
+        const auto p = static_cast<std::size_t>(trees->trees_of_tile(t)[k]);
+        const double foot = sign * trees->trees()[p].foot[manifest.axis_up()];
+        assigned += part.number_of_points;
+        points[p] += part.number_of_points;
+        heights[p] = std::max(heights[p], part.highest - foot);
+      }
+    }
+    unassigned_points = number_of_points - assigned;
+  }
+};
+
+/// Returns up to eight numbers as a list.
+std::string list(const std::vector<std::string>& items)
+{
+  constexpr std::size_t most = 8;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, items.size()); ++i)
+    text += (i == 0 ? "" : ", ") + items[i];
+  return text + (items.size() > most ? ", ..." : "");
+}
+
+std::vector<std::string>
+all_warnings(const Tile_manifest& manifest, const Options& options, const Merged_plot& plot)
+{
+  std::vector<std::string> warnings;
+  for (const Failure& failure : plot.failures)
+    warnings.push_back(failure.tile + " has no result: " + failure.reason);
+  const std::string tolerance = Ordered_json(plot.tolerance).dump();
+  std::vector<std::string> items;
+  for (const auto& [t, k] : plot.trees->unmatched())
+    items.push_back(std::to_string(k) + " of " + manifest.tiles()[t].file);
+  if (!items.empty())
+    warnings.push_back(std::to_string(items.size()) + " tree(s) of tiles with " +
+                       std::to_string(plot.unmatched_points) + " points match no foot within " +
+                       tolerance + ": " + list(items) +
+                       "; their points have no tree; use a larger --buffer or --tolerance");
+  items.clear();
+  for (const auto& [a, b] : plot.trees->twins())
+    items.push_back(std::to_string(a) + " and " + std::to_string(b));
+  if (!items.empty())
+    warnings.push_back(std::to_string(items.size()) +
+                       " pair(s) of trees of different tiles have "
+                       "feet within " +
+                       tolerance + ", perhaps one tree at a border: " + list(items));
+  items.clear();
+  for (std::size_t p = 0; p < plot.trees->trees().size(); ++p)
+    if (plot.trees->trees()[p].is_at_rim)
+      items.push_back(std::to_string(p));
+  if (!items.empty())
+    warnings.push_back(
+        std::to_string(items.size()) +
+        " tree(s) touch the outer rim of the buffer of their tile, and may be cut: " + list(items) +
+        "; segment these tiles again with a larger --buffer of tile_points");
+  if (!options.folder.empty()) {
+    std::size_t others = 0;
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(options.folder, error)) {
+      const std::string name = entry.path().filename().string();
+      others += Tree_files::is_name(name) && name >= Tree_files::name_of(plot.points.size());
+    }
+    if (others > 0)
+      warnings.push_back(options.folder + " has " + std::to_string(others) +
+                         " files of trees of another run; remove them");
+  }
+  return warnings;
+}
+
+std::string number(double value)
+{
+  return Ordered_json(value).dump(); // the shortest text that is read back as the same number
+}
+
+/// Returns whether a tree gets a file.
+bool has_file(const Options& options, std::uint64_t number_of_points)
+{
+  return !options.folder.empty() && number_of_points >= options.min_points;
+}
+
+std::string table_of(const Tile_manifest& manifest, const Options& options, const Merged_plot& plot)
+{
+  std::string text = "tree,x,y,z,radius,diameter_at_breast_height,height,points,tile,parts,"
+                     "is_at_rim,cut_parts,file\n";
+  for (std::size_t p = 0; p < plot.points.size(); ++p) {
+    const Plot_tree& tree = plot.trees->trees()[p];
+    text += std::to_string(p);
+    for (const double x : tree.foot)
+      text += "," + number(x);
+    text += "," + number(tree.radius) + "," + number(tree.diameter_at_breast_height) + "," +
+            number(plot.heights[p]) + "," + std::to_string(plot.points[p]) + "," +
+            manifest.tiles()[tree.tile].file + "," + std::to_string(tree.number_of_parts) + "," +
+            (tree.is_at_rim ? "1" : "0") + "," + std::to_string(tree.number_of_cut_parts) + "," +
+            (has_file(options, plot.points[p]) ? Tree_files::name_of(p) : "") + "\n";
+  }
+  return text;
+}
+
+Ordered_json to_json(const Tile_manifest& manifest, const Options& options, const Merged_plot& plot)
+{
+  Ordered_json failures = Ordered_json::array(), unmatched = Ordered_json::array();
+  for (const Failure& failure : plot.failures)
+    failures.push_back({{"tile", failure.tile}, {"reason", failure.reason}});
+  for (const auto& [t, k] : plot.trees->unmatched())
+    unmatched.push_back({{"tile", manifest.tiles()[t].file},
+                         {"tree", k},
+                         {"foot", plot.tiles.results()[t]->trees[k].foot},
+                         {"points", plot.tiles.parts(t)[k].number_of_points}});
+  return {{"tiles", manifest.tiles().size()},
+          {"failed_tiles", failures},
+          {"points", plot.number_of_points},
+          {"missing_points", manifest.number_of_points() - plot.number_of_points},
+          {"unassigned_points", plot.unassigned_points},
+          {"trees", plot.points.size()},
+          {"tolerance", plot.tolerance},
+          {"unmatched_points", plot.unmatched_points},
+          {"unmatched_trees", unmatched},
+          {"close_feet", plot.trees->twins()},
+          {"warnings", all_warnings(manifest, options, plot)}};
+}
+
+/// Writes the points of all cores in the order of their indices.
+void write_points(const Tile_manifest& manifest, const Options& options, const Merged_plot& plot)
+{
+  std::vector<Ordered_points::Source> sources;
+  for (std::size_t t = 0; t < manifest.tiles().size(); ++t) {
+    if (plot.tiles.source(t) == Labelled_tiles::Source::none)
+      continue;
+    sources.push_back({plot.tiles.path_of(t), [&plot, t](pcs::IO::Point_table& chunk) {
+                         plot.tiles.make_core(t, chunk);
+                         for (std::int32_t& tree : chunk.property<std::int32_t>("tree"))
+                           if (tree >= 0)
+                             tree = plot.trees->trees_of_tile(t)[static_cast<std::size_t>(tree)];
+                       }});
+  }
+  Ordered_points::write(std::move(sources),
+                        plot.tiles.schema(),
+                        static_cast<std::size_t>(options.open_files),
+                        options.points);
+}
+
+void write_trees(const Options& options, const Merged_plot& plot)
+{
+  std::vector<std::size_t> wanted;
+  for (std::size_t p = 0; p < plot.points.size(); ++p)
+    if (has_file(options, plot.points[p]))
+      wanted.push_back(p);
+  Tree_files(plot.tiles, *plot.trees, options.folder)
+      .write(wanted, static_cast<std::size_t>(options.open_files));
+}
+
+/// Returns whether all tiles have results.
+bool run(const Options& options)
+{
+  check(options);
+  pcs::internal::Stopwatch watch;
+  const Tile_manifest manifest(options.tiles);
+  check_files(options, manifest);
+  std::unique_ptr<Report_file> table, report;
+  if (!options.table.empty())
+    table = std::make_unique<Report_file>(options.table);
+  if (!options.report.empty())
+    report = std::make_unique<Report_file>(options.report);
+  if (!options.folder.empty())
+    make_folder(options.folder);
+
+  const Merged_plot plot(manifest, options);
+  if (!options.points.empty()) {
+    check_output(options.points, plot.tiles.schema());
+    write_points(manifest, options, plot);
+  }
+  if (!options.folder.empty())
+    write_trees(options, plot);
+  Ordered_json json = to_json(manifest, options, plot);
+  if (table)
+    table->commit(table_of(manifest, options, plot));
+  json["seconds"] = watch.lap();
+  if (report)
+    report->commit(json);
+  for (std::size_t w = 0; w < json["warnings"].size(); ++w) // those of failed tiles are the first
+    if (!options.is_quiet || w < plot.failures.size())
+      std::cerr << "merge_tiles: warning: " << json["warnings"][w].get<std::string>() << '\n';
+  if (!options.is_quiet)
+    std::cout << "trees " << plot.points.size() << ", unassigned points " << plot.unassigned_points
+              << " of " << plot.number_of_points << ", tiles " << plot.number_of_results << " of "
+              << manifest.tiles().size() << ", seconds " << json["seconds"] << '\n';
+  return plot.number_of_results == manifest.tiles().size();
+}
+
+} // namespace program
+
+int main(int argc, char** argv)
+{
+  program::Options options;
+  CLI::App app("Merges the segmented tiles of a plot.", "merge_tiles");
+  program::declare(app, options);
+  return program::run_program(app, argc, argv, [&] { return program::run(options); });
+}

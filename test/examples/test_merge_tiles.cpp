@@ -1,0 +1,421 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Tests the program merge_tiles: trees of the plot, order of the points, independence of the order
+// of trees and files, and missing or damaged tiles.
+
+#include <pcs/IO/points/Point_table.h>
+#include <pcs/IO/read_points.h>
+#include <pcs/IO/write_points.h>
+
+#include <boost/test/unit_test.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <examples/Program_run.h>
+#include <filesystem>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <random>
+#include <scan/tree_foot.h>
+#include <sstream>
+#include <string>
+#include <tiling/Tile_manifest.h>
+#include <tiling/Tile_result.h>
+#include <vector>
+
+namespace test_merge_tiles {
+
+namespace {
+
+constexpr std::size_t number_of_points = 6000, number_of_trees = 12;
+constexpr double x0 = 500000, y0 = 5400000;
+
+/// A plot of 40 m x 30 m in UTM coordinates. A point belongs to the tree with the nearest foot if
+/// this is within 5 m. The radius of the trees decreases with their number.
+struct Merge_run : Program_run
+{
+  Merge_run() : Program_run("tile_points")
+  {
+    for (std::size_t t = 0; t < number_of_trees; ++t)
+      feet.push_back({x0 + 5 + 10 * double(t % 4) + random(2),
+                      y0 + 5 + 10 * double(t / 4) + random(2),
+                      300 + random(3)});
+    std::vector<Table::Point_3> points;
+    std::vector<float> intensity;
+    for (std::size_t i = 0; i < number_of_points; ++i) {
+      points.emplace_back(x0 + random(40), y0 + random(30), 300 + random(15));
+      intensity.push_back(float(random(1)));
+      trees.push_back(tree_of(points.back()));
+    }
+    plot = Table(points);
+    plot.add_property("intensity", intensity);
+    pcs::IO::write_points(path("plot.ply"), plot);
+    BOOST_TEST_REQUIRE(run("--input plot.ply --folder tiles --tile-points 500 --buffer 8") == 0,
+                       err);
+    manifest = Json::parse(content("tiles/tiles.json"));
+    program = PCS_TEST_PROGRAMS "/merge_tiles";
+  }
+
+  double random(double size) { return size * (double(engine()) / 4294967296.0); }
+
+  std::int32_t tree_of(const Table::Point_3& p) const
+  {
+    std::int32_t best = -1;
+    double least = 5;
+    for (std::size_t t = 0; t < feet.size(); ++t) {
+      const double d = std::hypot(p.x() - feet[t][0], p.y() - feet[t][1]);
+      if (d < least) {
+        least = d;
+        best = std::int32_t(t);
+      }
+    }
+    return best;
+  }
+
+  std::string name_of(std::size_t tile) const { return manifest["tiles"][tile]["file"]; }
+
+  bool has_core_foot(std::size_t tile, std::size_t tree) const
+  {
+    const Json& core = manifest["tiles"][tile]["core"];
+    for (std::size_t axis = 0; axis < 2; ++axis)
+      if (core["low"][axis] > feet[tree][axis] || feet[tree][axis] >= core["high"][axis])
+        return false;
+    return true;
+  }
+
+  std::size_t owner_of(std::size_t tree) const
+  {
+    std::size_t tile = 0;
+    while (!has_core_foot(tile, tree))
+      ++tile;
+    return tile;
+  }
+
+  /// Writes the results of all tiles. Trees have an order of their own in each tile, and feet that
+  /// differ by at most `shift` from those of the owner.
+  void write_results(const std::string& where, unsigned seed, double shift = 0.1)
+  {
+    engine.seed(seed);
+    std::filesystem::create_directories(path(where));
+    for (std::size_t tile = 0; tile < manifest["tiles"].size(); ++tile)
+      write_result(where, tile, shift);
+  }
+
+  void write_result(const std::string& where, std::size_t tile, double shift)
+  {
+    const Json& row = manifest["tiles"][tile];
+    std::vector<std::size_t> order(number_of_trees);
+    std::iota(order.begin(), order.end(), 0);
+    for (std::size_t i = order.size(); i > 1; --i)
+      std::swap(order[i - 1], order[engine() % i]);
+    const Table all = pcs::IO::read_points(path("tiles/" + name_of(tile)));
+    const auto& index = all.property<std::uint32_t>("index");
+    const auto& is_core = all.property<std::uint8_t>("is_core");
+    std::vector<std::size_t> rows;
+    std::vector<std::int32_t> tree;
+    program::Tile_result result;
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      program::Tree_of_tile found;
+      found.foot = feet[order[k]];
+      if (!has_core_foot(tile, order[k]))
+        found.foot[0] += shift * (engine() % 2 == 0 ? 1 : -1);
+      found.is_foot_in_core = has_core_foot(tile, order[k]);
+      found.radius = 1 - 0.05 * double(order[k]);
+      found.diameter_at_breast_height = found.radius / 3;
+      found.is_at_rim = order[k] == 7;
+      result.trees.push_back(found);
+    }
+    for (std::size_t i = 0; i < index.size(); ++i) {
+      if (is_core[i] == 0)
+        continue;
+      rows.push_back(i);
+      const std::int32_t t = trees[index[i]];
+      tree.push_back(t < 0 ? -1
+                           : std::int32_t(std::find(order.begin(), order.end(), std::size_t(t)) -
+                                          order.begin()));
+      if (t >= 0)
+        ++result.trees[std::size_t(tree.back())].number_of_core_points;
+    }
+    for (const char* corner : {"low", "high"})
+      for (std::size_t axis = 0; axis < 2; ++axis) {
+        (corner[0] == 'l' ? result.core.low : result.core.high)[axis] = row["core"][corner][axis];
+        (corner[0] == 'l' ? result.buffered.low : result.buffered.high)[axis] =
+            row["buffered"][corner][axis];
+      }
+    result.number_of_core_points = rows.size();
+    result.breast_height = 1.3;
+    Table core = all.select(rows);
+    core.remove_property("is_core");
+    core.add_property("tree", tree);
+    pcs::IO::write_points(program::points_of_result(path(where), name_of(tile)), core);
+    write(program::trees_of_result(where, name_of(tile)), program::to_json(result).dump());
+  }
+
+  std::vector<std::vector<std::string>> table(const std::string& name) const
+  {
+    std::vector<std::vector<std::string>> rows;
+    std::istringstream lines(content(name));
+    for (std::string line; std::getline(lines, line);) {
+      rows.emplace_back();
+      std::istringstream cells(line + ",");
+      for (std::string cell; std::getline(cells, cell, ',');)
+        rows.back().push_back(cell);
+    }
+    return rows;
+  }
+
+  std::mt19937 engine{7};
+  std::vector<std::array<double, 3>> feet;
+  std::vector<std::int32_t> trees; ///< of the points of the plot
+  Table plot;
+  Json manifest;
+};
+
+} // namespace
+
+BOOST_FIXTURE_TEST_SUITE(merge_tiles_program, Merge_run)
+
+BOOST_AUTO_TEST_CASE(points_table_and_files_have_the_trees_of_the_plot)
+{
+  write_results("results", 1);
+  BOOST_TEST_REQUIRE(run("--tiles tiles/tiles.json --results results --table trees.csv "
+                         "--points out.ply --folder trees --min-points 300 --report r.json") == 0,
+                     err);
+  const Table points = pcs::IO::read_points(path("out.ply"));
+  BOOST_TEST((points.points() == plot.points()));
+  BOOST_TEST((points.property_values("intensity") == plot.property_values("intensity")));
+  BOOST_TEST((points.property<std::int32_t>("tree") == trees));
+  const auto& index = points.property<std::uint32_t>("index");
+  for (std::size_t i = 0; i < index.size(); ++i)
+    BOOST_REQUIRE(index[i] == i);
+
+  const auto rows = table("trees.csv");
+  BOOST_TEST_REQUIRE(rows.size() == number_of_trees + 1);
+  for (std::size_t t = 0; t < number_of_trees; ++t) {
+    const std::vector<std::string>& row = rows[t + 1];
+    BOOST_TEST_REQUIRE(row.size() == rows[0].size());
+    BOOST_TEST(row[0] == std::to_string(t));
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      BOOST_TEST(std::stod(row[1 + axis]) == feet[t][axis]);
+    double height = 0;
+    std::vector<std::size_t> own;
+    std::vector<bool> has_part(manifest["tiles"].size(), false);
+    for (std::size_t i = 0; i < trees.size(); ++i)
+      if (trees[i] == std::int32_t(t)) {
+        own.push_back(i);
+        height = std::max(height, plot.points()[i].z() - feet[t][2]);
+        for (std::size_t k = 0; k < has_part.size(); ++k) {
+          const Json& core = manifest["tiles"][k]["core"];
+          const auto& p = plot.points()[i];
+          has_part[k] = has_part[k] || (core["low"][0] <= p.x() && p.x() < core["high"][0] &&
+                                        core["low"][1] <= p.y() && p.y() < core["high"][1]);
+        }
+      }
+    const auto parts = std::count(has_part.begin(), has_part.end(), true);
+    BOOST_TEST(std::stod(row[6]) == height);
+    BOOST_TEST(row[7] == std::to_string(own.size()));
+    BOOST_TEST(row[8] == name_of(owner_of(t)));
+    BOOST_TEST(row[9] == std::to_string(parts));
+    BOOST_TEST(row[10] == (t == 7 ? "1" : "0"));
+    BOOST_TEST(row[11] == std::to_string(t == 7 ? parts - has_part[owner_of(t)] : 0));
+    const std::string name =
+        "tree_0000" + std::string(t < 10 ? "0" : "") + std::to_string(t) + ".ply";
+    BOOST_TEST(exists("trees/" + name) == (own.size() >= 300));
+    BOOST_TEST(row[12] == (own.size() >= 300 ? name : ""));
+    if (own.size() < 300)
+      continue;
+    const Table tree = pcs::IO::read_points(path("trees/" + name));
+    BOOST_TEST((*program::read_foot(tree) == feet[t]));
+    std::vector<std::size_t> found;
+    for (const std::uint32_t i : tree.property<std::uint32_t>("index"))
+      found.push_back(i);
+    BOOST_TEST((tree.points() == plot.select(found).points()));
+    std::sort(found.begin(), found.end());
+    BOOST_TEST((found == own));
+    BOOST_TEST(!tree.has_property("tree"));
+  }
+  report = Json::parse(content("r.json"));
+  BOOST_TEST(report["points"] == number_of_points);
+  BOOST_TEST(report["unassigned_points"] == std::count(trees.begin(), trees.end(), -1));
+  BOOST_TEST(report["unmatched_trees"].empty());
+  BOOST_TEST(report["close_feet"].empty());
+  BOOST_TEST(err.find("1 tree(s) touch the outer rim") != std::string::npos, err);
+}
+
+BOOST_AUTO_TEST_CASE(bytes_do_not_depend_on_the_order_of_trees_and_the_number_of_open_files)
+{
+  write_results("a", 1);
+  write_results("b", 2);
+  const std::string tiles = "--tiles tiles/tiles.json --min-points 1 --quiet ";
+  BOOST_TEST_REQUIRE(run(tiles + "--results a --table a.csv --points a.ply --folder trees_a") == 0,
+                     err);
+  BOOST_TEST(out.empty());
+  BOOST_TEST_REQUIRE(run(tiles + "--results b --table b.csv --points b.ply --folder trees_b "
+                                 "--open-files 2") == 0,
+                     err);
+  BOOST_TEST((content("a.csv") == content("b.csv")));
+  BOOST_TEST((content("a.ply") == content("b.ply")));
+  for (std::size_t t = 0; t < number_of_trees; ++t) {
+    const std::string name =
+        "/tree_0000" + std::string(t < 10 ? "0" : "") + std::to_string(t) + ".ply";
+    BOOST_TEST((content("trees_a" + name) == content("trees_b" + name)));
+  }
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    BOOST_TEST(entry.path().filename().string().find("unfinished") == std::string::npos);
+}
+
+BOOST_AUTO_TEST_CASE(missing_and_damaged_tiles_do_not_end_the_run)
+{
+  write_results("results", 1);
+  BOOST_TEST_REQUIRE(manifest["tiles"].size() >= 9u);
+  const auto result = [&](std::size_t tile, const std::string& extension) {
+    return "results/" + std::filesystem::path(name_of(tile)).stem().string() + extension;
+  };
+  const std::string whole = content(result(1, ".ply"));
+  std::filesystem::remove(path(result(0, ".json")));
+  write(result(1, ".ply"), whole.substr(0, whole.size() - 3));
+  write(result(2, ".json"), "{");
+  std::filesystem::copy_file(path(result(4, ".ply")),
+                             path(result(3, ".ply")),
+                             std::filesystem::copy_options::overwrite_existing);
+  Table wrong = pcs::IO::read_points(path(result(5, ".ply")));
+  wrong.property<std::int32_t>("tree")[4] = 99;
+  pcs::IO::write_points(path(result(5, ".ply")), wrong);
+  wrong = pcs::IO::read_points(path(result(6, ".ply")));
+  std::swap(wrong.property<std::uint32_t>("index")[3], wrong.property<std::uint32_t>("index")[4]);
+  pcs::IO::write_points(path(result(6, ".ply")), wrong);
+  std::filesystem::remove(path(result(7, ".ply")));
+  std::filesystem::remove(path("tiles/" + name_of(7)));
+  BOOST_TEST(run("--tiles tiles/tiles.json --results results --table trees.csv --points out.ply "
+                 "--report r.json --folder trees --min-points 1") == 1);
+  for (std::size_t tile = 0; tile < manifest["tiles"].size(); ++tile)
+    BOOST_TEST((err.find(name_of(tile) + " has no result") != std::string::npos) ==
+                   (tile < 8 && tile != 4),
+               name_of(tile) << " in " << err);
+  report = Json::parse(content("r.json"));
+  BOOST_TEST(report["failed_tiles"].size() == 8u); // the last one twice: result and tile
+  BOOST_TEST(report["missing_points"] == manifest["tiles"][7]["core_points"]);
+  const Table points = pcs::IO::read_points(path("out.ply"));
+  BOOST_TEST(points.number_of_points() ==
+             number_of_points - manifest["tiles"][7]["core_points"].get<std::size_t>());
+  const auto& index = points.property<std::uint32_t>("index");
+  const auto& tree = points.property<std::int32_t>("tree");
+  const auto rows = table("trees.csv");
+  std::vector<std::array<double, 3>> found;
+  for (std::size_t r = 1; r < rows.size(); ++r)
+    found.push_back({std::stod(rows[r][1]), std::stod(rows[r][2]), std::stod(rows[r][3])});
+  std::vector<std::array<double, 3>> expected;
+  for (std::size_t t = 0; t < number_of_trees; ++t)
+    if (owner_of(t) >= 8 || owner_of(t) == 4)
+      expected.push_back(feet[t]);
+  BOOST_TEST((found == expected));
+  std::size_t number_of_labels = 0;
+  for (std::size_t i = 0; i < index.size(); ++i) {
+    BOOST_REQUIRE(points.points()[i] == plot.points()[index[i]]);
+    BOOST_REQUIRE((i == 0 || index[i] > index[i - 1]));
+    if (tree[i] >= 0)
+      BOOST_REQUIRE(found[std::size_t(tree[i])] == feet[std::size_t(trees[index[i]])]);
+    number_of_labels += tree[i] >= 0;
+  }
+  BOOST_TEST(number_of_labels > 1000u);
+}
+
+BOOST_AUTO_TEST_CASE(feet_beyond_the_tolerance_are_counted)
+{
+  write_results("results", 1, 0.3);
+  const std::string tiles = "--tiles tiles/tiles.json --results results --report r.json ";
+  BOOST_TEST_REQUIRE(run(tiles) == 0, err);
+  BOOST_TEST(Json::parse(content("r.json"))["unmatched_trees"].empty());
+  BOOST_TEST_REQUIRE(run(tiles + "--points out.ply --tolerance 0.29") == 0, err);
+  report = Json::parse(content("r.json"));
+  std::size_t unmatched = 0;
+  for (const Json& tree : report["unmatched_trees"])
+    unmatched += tree["points"].get<std::size_t>();
+  BOOST_TEST(unmatched > 0u);
+  BOOST_TEST(report["unmatched_points"] == unmatched);
+  BOOST_TEST(err.find("match no foot within 0.29") != std::string::npos, err);
+  const auto tree = pcs::IO::read_points(path("out.ply")).property<std::int32_t>("tree");
+  BOOST_TEST(std::size_t(std::count(tree.begin(), tree.end(), -1)) ==
+             unmatched + std::size_t(std::count(trees.begin(), trees.end(), -1)));
+}
+
+BOOST_AUTO_TEST_CASE(feet_of_different_tiles_that_are_near_are_listed)
+{
+  // tree 1 stands beside tree 0, across the border of their tiles
+  const Json& core = manifest["tiles"][owner_of(0)]["core"];
+  feet[0][0] = core["high"][0].get<double>() - 0.1;
+  feet[1] = feet[0];
+  feet[1][0] += 0.2;
+  BOOST_TEST_REQUIRE(owner_of(0) != owner_of(1));
+  write_results("results", 1, 0);
+  BOOST_TEST_REQUIRE(run("--tiles tiles/tiles.json --results results --report r.json") == 0, err);
+  BOOST_TEST(Json::parse(content("r.json"))["close_feet"] == Json::parse("[[0, 1]]"));
+  BOOST_TEST(err.find("perhaps one tree at a border: 0 and 1") != std::string::npos, err);
+}
+
+BOOST_AUTO_TEST_CASE(a_foot_outside_the_plot_belongs_to_the_nearest_core)
+{
+  const program::Tile_manifest plot_of_tiles(path("tiles/tiles.json"));
+  for (std::size_t t = 0; t < plot_of_tiles.tiles().size(); ++t) {
+    const program::Box_2& core = plot_of_tiles.tiles()[t].core;
+    BOOST_TEST(plot_of_tiles.owner_of(core.low) == t);
+    if (core.low[0] == x0)
+      BOOST_TEST(plot_of_tiles.owner_of({x0 - 1, core.low[1]}) == t);
+    if (core.high[0] == x0 + 40)
+      BOOST_TEST(plot_of_tiles.owner_of({x0 + 41, core.low[1]}) == t);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(bad_input_is_refused)
+{
+  write_results("results", 1);
+  std::filesystem::create_directories(path("empty"));
+  write("file", "a file");
+  const std::string before = content("tiles/tiles.json");
+  const std::string tile = content("tiles/" + name_of(0));
+  const auto refuses = [&](const std::string& arguments, const std::string& word) {
+    const int code = run(arguments);
+    BOOST_TEST(code == 1, arguments << ": exit code " << code);
+    BOOST_TEST(err.find(word) != std::string::npos, word << " in " << err);
+    BOOST_TEST(!exists("t.csv"), arguments);
+  };
+  const std::string inputs = "--tiles tiles/tiles.json --results results ";
+  refuses(inputs, "--table");
+  refuses("--results results --table t.csv", "--tiles");
+  refuses("--tiles missing.json --results results --table t.csv", "missing.json");
+  refuses("--tiles plot.ply --results results --table t.csv", "not valid JSON");
+  refuses("--tiles tiles/tiles.json --results missing --table t.csv", "missing");
+  refuses("--tiles tiles/tiles.json --results empty --table t.csv", "no result");
+  refuses(inputs + "--table t.csv --tolerance nan", "--tolerance");
+  refuses(inputs + "--table t.csv --tolerance -1", "--tolerance");
+  refuses(inputs + "--table t.csv --open-files 1", "--open-files");
+  refuses(inputs + "--table t.csv --folder file", "directory");
+  refuses(inputs + "--table tiles/tiles.json", "same file");
+  refuses(inputs + "--table t.csv --points tiles/" + name_of(0), "same file");
+  refuses(inputs + "--table t.csv --points results/" + name_of(0), "same file");
+  refuses(inputs + "--table t.csv --report t.csv", "same file");
+  Json damaged = manifest;
+  damaged["tiles"][0].erase("core");
+  write("tiles/damaged.json", damaged.dump());
+  refuses("--tiles tiles/damaged.json --results results --table t.csv", "/tiles/0");
+  damaged = manifest;
+  damaged["tiles"][0]["file"] = "../tile_0001.ply";
+  write("tiles/damaged.json", damaged.dump());
+  refuses("--tiles tiles/damaged.json --results results --table t.csv", "/tiles/0/file");
+  damaged = manifest;
+  damaged["points"] = 3;
+  write("tiles/damaged.json", damaged.dump());
+  refuses("--tiles tiles/damaged.json --results results --table t.csv", "6000");
+  BOOST_TEST(content("tiles/tiles.json") == before);
+  BOOST_TEST((content("tiles/" + name_of(0)) == tile));
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_merge_tiles
