@@ -65,6 +65,7 @@ private:
   std::size_t m_number_of_copies = 0, m_number_of_completed_copies = 0;
   Copy_descriptors m_copies;
   std::unique_ptr<Session> m_session;
+  std::unique_ptr<Session> m_copy;  ///< the copy in work
   std::unique_ptr<Session> m_trial; ///< see `choose_typical_skeleton()`
   std::size_t m_number_of_trials = 0;
   double m_coordinate_step = 0; ///< of the scan before displacement, like the next [L]

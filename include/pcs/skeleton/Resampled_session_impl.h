@@ -117,12 +117,13 @@ bool Resampled_session<ConcurrencyTag>::extract_copies(pcs::internal::Progress& 
   for (; m_number_of_completed_copies < m_number_of_copies; ++m_number_of_completed_copies) {
     pcs::internal::Progress part(
         [&](double f) { return progress((double(m_number_of_completed_copies) + f) / count); });
-    const std::unique_ptr<Session> session =
-        make_session(resample_scan(m_scan, m_number_of_completed_copies));
-    if (!session->join(part))
+    if (!m_copy)
+      m_copy = make_session(resample_scan(m_scan, m_number_of_completed_copies));
+    if (!m_copy->join(part))
       return false;
-    if (session->report().status == Status::converged)
-      m_copies.add(session->report(), internal::root_of(*session));
+    if (m_copy->report().status == Status::converged)
+      m_copies.add(m_copy->report(), internal::root_of(*m_copy));
+    m_copy.reset();
   }
   return true;
 }
