@@ -11,6 +11,7 @@ import os
 import sys
 from xml.sax.saxutils import escape
 
+sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from run_step import write  # noqa: E402
 
@@ -107,9 +108,9 @@ def map_text(rows, tiles, failed):
     low = [min(t["core"]["low"][k] for t in tiles) for k in (0, 1)]
     high = [max(t["core"]["high"][k] for t in tiles) for k in (0, 1)]
     size = [high[k] - low[k] for k in (0, 1)]
-    # The smallest usual scale at which the map fits on a sheet of 800 mm.
+    # The largest usual scale, at most 1 : 100, at which the map fits on a sheet of 800 mm.
     scales = [n * 10**e for e in range(1, 7) for n in (1, 2, 5)]
-    scale = next((s for s in scales if max(size) * 1000 / s <= 800), scales[-1])
+    scale = next((s for s in scales if s >= 100 and max(size) * 1000 / s <= 800), scales[-1])
     mm = 1000 / scale  # of one metre
     edge, foot = 8, 14
     width, height = size[0] * mm + 2 * edge, size[1] * mm + edge + foot
@@ -123,7 +124,7 @@ def map_text(rows, tiles, failed):
     lines = [
         '<?xml version="1.0" encoding="UTF-8"?>',
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:.3f}mm" height="{height:.3f}mm"'
-        f' viewBox="0 0 {width:.3f} {height:.3f}" font-family="sans-serif" font-size="2.5">',
+        f' viewBox="0 0 {width:.3f} {height:.3f}" font-family="sans-serif" font-size="3">',
         '<rect width="100%" height="100%" fill="white"/>',
     ]
     for tile in tiles:

@@ -10,6 +10,7 @@ if the step shall be started again, or if nothing can go on without it.
 import argparse
 import csv
 import ctypes
+import fcntl
 import filecmp
 import json
 import math
@@ -57,6 +58,11 @@ class Runner:
         self.arguments = arguments
         self.process = None
         os.makedirs(os.path.dirname(arguments.log) or ".", exist_ok=True)
+        # If Snakemake was killed, this step may still run: its files are written by one process.
+        os.makedirs("locks", exist_ok=True)
+        name = arguments.step + "_" + os.path.basename(arguments.log)
+        self.lock = open(os.path.join("locks", name), "w", encoding="ascii")
+        fcntl.flock(self.lock, fcntl.LOCK_EX)
         for number in (signal.SIGTERM, signal.SIGINT):
             signal.signal(number, self.stop)
 
@@ -119,7 +125,7 @@ class Runner:
                 )
                 code, limit = self.wait(seconds)
             except OSError as error:
-                text = f"{command[0]}: cannot be started: {error.strerror}; see `programs` in config.yaml"
+                text = f"{command[0]}: cannot be started: {error.strerror}; see `programs` of the config"
                 log.write(text.encode() + b"\n")
                 return BAD_INPUT, text
             if limit:
@@ -129,7 +135,8 @@ class Runner:
         lines = [line for line in lines if line.strip() and ": warning: " not in line]
         message = " ".join(lines[-3:])
         if code < 0 and not limit:
-            message = (message + f" (ended by signal {-code})").strip()
+            limit = f"ended by signal {-code}"
+            message = f"{message} {os.path.basename(command[0])}: {limit}".strip()
         if code not in (0, BAD_INPUT) and not is_last:
             raise Again(message)
         return code, message
