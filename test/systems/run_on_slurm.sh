@@ -18,6 +18,7 @@ mkdir -p "$1"/{state,spool,log}
 folder=$(realpath "$1")
 shift
 node=$(hostname -s)
+memory=$(($(awk '/MemTotal/ { print $2 }' /proc/meminfo) * 9 / 10240)) # MB, nine tenths of all
 port=$((20000 + RANDOM % 10000))
 export SLURM_CONF=$folder/slurm.conf
 
@@ -45,7 +46,7 @@ JobAcctGatherType=jobacct_gather/none
 AccountingStorageType=accounting_storage/none
 MinJobAge=86400
 ReturnToService=2
-NodeName=$node NodeAddr=127.0.0.1 CPUs=$(nproc) RealMemory=$(($(awk '/MemTotal/ { print $2 }' /proc/meminfo) * 9 / 10240))
+NodeName=$node NodeAddr=127.0.0.1 CPUs=$(nproc) RealMemory=$memory
 PartitionName=main Nodes=$node Default=YES MaxTime=INFINITE State=UP
 END
 
@@ -73,5 +74,6 @@ code=0
 "$@" || code=$?
 scontrol show job --oneliner |
   sed -E 's/.*JobId=([0-9]+).* JobName=(\S+).* JobState=(\S+).* RunTime=(\S+).*/\1 \2 \3 \4/' > "$folder/jobs.txt"
-echo "run_on_slurm: exit code $code, $(grep -c COMPLETED "$folder/jobs.txt") of $(wc -l < "$folder/jobs.txt") jobs completed"
+completed=$(grep -c COMPLETED "$folder/jobs.txt" || true)
+echo "run_on_slurm: exit code $code, $completed of $(wc -l < "$folder/jobs.txt") jobs completed"
 exit "$code"

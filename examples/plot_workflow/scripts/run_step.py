@@ -3,8 +3,8 @@
 # SPDX-License-Identifier: BSL-1.0
 """Runs one step of the plot workflow and records whether it has failed.
 
-A failure is written to the status file of the step, so the other steps go on. The exit code is 1 only
-if the step shall be started again, or if nothing can go on without it.
+A failure is written to the status file of the step, so the other steps go on. The exit code is 1
+only if the step shall be started again, or if nothing can go on without it.
 """
 
 import argparse
@@ -125,7 +125,8 @@ class Runner:
                 )
                 code, limit = self.wait(seconds)
             except OSError as error:
-                text = f"{command[0]}: cannot be started: {error.strerror}; see `programs` of the config"
+                text = f"{command[0]}: cannot be started: {error.strerror}; see `programs`"
+                text += " in config.yaml"
                 log.write(text.encode() + b"\n")
                 return BAD_INPUT, text
             if limit:
