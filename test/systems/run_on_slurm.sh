@@ -5,7 +5,7 @@
 #   test/systems/run_on_slurm.sh FOLDER COMMAND...
 #
 # FOLDER is removed first; it gets the configuration and the logs. jobs.txt has the state of every job. For example:
-#   test/systems/run_on_slurm.sh /tmp/slurm snakemake --profile examples/plot_workflow/profiles/slurm \
+#   test/systems/run_on_slurm.sh slurm_folder snakemake --profile examples/plot_workflow/profiles/slurm \
 #     --snakefile examples/plot_workflow/Snakefile --directory PLOT
 set -euo pipefail
 
