@@ -3,18 +3,10 @@
 // Links between sheets are removed; links of volumes, lines and groups of outliers remain.
 
 #include <pcs/neighborhood/drop_short_cuts.h>
-#include <pcs/neighborhood/spatial_order.h>
 #include <support/point_clouds.h>
 #include <support/threads.h>
 
 #include <boost/test/unit_test.hpp>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <random>
-#include <vector>
 
 namespace test_drop_short_cuts {
 
@@ -45,43 +37,6 @@ BOOST_AUTO_TEST_CASE(two_sheets_become_two_components)
   BOOST_TEST(number_of_components(graph) == 1u);
   BOOST_TEST(drop_short_cuts<Tag>(points, graph) > 0u);
   BOOST_TEST(number_of_components(graph) == 2u);
-}
-
-// Flat blocks of points in spatial order spare normals, but decide nothing.
-BOOST_AUTO_TEST_CASE(the_order_of_the_points_does_not_matter)
-{
-  for (const bool is_folded : {false, true}) {
-    const Points sheets = pcs_test::sheets(90, 90, 1.3, is_folded);
-    Points ordered;
-    for (const std::uint32_t i : pcs::neighborhood::spatial_order<Tag>(sheets))
-      ordered.push_back(sheets[i]);
-    Points shuffled = ordered;
-    std::shuffle(shuffled.begin(), shuffled.end(), std::mt19937(4));
-    auto graph = nearest_neighbor_graph<Tag>(ordered, 6);
-    auto other = nearest_neighbor_graph<Tag>(shuffled, 6);
-    const std::size_t dropped = drop_short_cuts<Tag>(ordered, graph);
-    BOOST_TEST(dropped > 0u);
-    BOOST_TEST(drop_short_cuts<Tag>(shuffled, other) == dropped);
-    BOOST_TEST(number_of_components(graph) == (is_folded ? 1u : 2u));
-    BOOST_TEST(number_of_components(other) == (is_folded ? 1u : 2u));
-  }
-}
-
-BOOST_AUTO_TEST_CASE(most_links_along_a_surface_are_not_suspected)
-{
-  Points points;
-  for (const Vec3& p : pcs_test::plate(200, 200, 1))
-    points.push_back(p + Vec3(0, 0, 8 * std::sin(0.02 * p.x()) * std::sin(0.03 * p.y())));
-  Points ordered;
-  for (const std::uint32_t i : pcs::neighborhood::spatial_order<Tag>(points))
-    ordered.push_back(points[i]);
-  const auto graph = nearest_neighbor_graph<Tag>(ordered, 6);
-  std::vector<char> is_suspected, is_end;
-  pcs::neighborhood::internal::mark_suspected<Tag>(ordered, graph, is_suspected, is_end);
-  // blocks that are not compact, such as those at the borders of octants, are not flat
-  BOOST_TEST(double(std::count(is_suspected.begin(), is_suspected.end(), 1)) <
-             0.2 * double(is_suspected.size()));
-  BOOST_TEST(double(std::count(is_end.begin(), is_end.end(), 1)) < 0.2 * double(is_end.size()));
 }
 
 BOOST_AUTO_TEST_CASE(volumes_and_lines_keep_their_links)

@@ -7,9 +7,9 @@
 
 #include <pcs/internal/parallel.h>
 #include <pcs/neighborhood/Proximity_graph.h>
-#include <pcs/neighborhood/flat_parts.h>
 
 #include <Eigen/Core>
+#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -37,6 +37,7 @@ constexpr std::size_t largest_clump = 12;
 /// below `largest_thickness` times the middle one, and wide if the middle one exceeds
 /// `smallest_width` times the largest one.
 constexpr double largest_thickness = 0.7;
+constexpr double smallest_width = 0.02;
 
 namespace internal {
 
@@ -46,6 +47,13 @@ struct Surface_normal
   Eigen::Vector3f direction = Eigen::Vector3f::Zero();
   float confidence = 0;
 };
+
+inline Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen_system(const Eigen::Matrix3d& m)
+{
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
+  eigen.computeDirect(m);
+  return eigen;
+}
 
 /// Count, sum and second moments of a point and its neighbours, relative to the point. Single
 /// precision suffices for differences and halves the largest array of the construction.
@@ -65,42 +73,22 @@ struct Ring_moments
   }
 };
 
-/// Marks the points of `is_marked` and their neighbours.
-template <class ConcurrencyTag>
-std::vector<char> with_neighbors(const Proximity_graph& graph, const std::vector<char>& is_marked)
-{
-  std::vector<char> result(is_marked.size());
-  pcs::internal::for_each_index<ConcurrencyTag>(is_marked.size(), [&](std::size_t i) {
-    result[i] = is_marked[i] || std::any_of(graph.begin(i), graph.end(i), [&](std::uint32_t j) {
-                  return is_marked[j] != 0;
-                });
-  });
-  return result;
-}
-
 /// Estimates normals from two rings of neighbours; a point counts once per path to it. Links
 /// between two parallel sheets hardly change the result, because both sheets have the same normal.
-/// Only points of `is_wanted` get a normal.
 template <class ConcurrencyTag>
 std::vector<Surface_normal> surface_normals(const std::vector<Vec3>& points,
-                                            const Proximity_graph& graph,
-                                            const std::vector<char>& is_wanted)
+                                            const Proximity_graph& graph)
 {
-  // Edges are divided by a typical length, to keep their squares in the range of a float. A power
-  // of two causes no rounding.
-  constexpr std::size_t stride = 64;
-  double sum_of_lengths = 0, number_of_links = 0;
-  for (std::size_t i = 0; i < points.size(); i += stride)
-    for (auto j = graph.begin(i); j != graph.end(i); ++j, ++number_of_links)
+  // Edges are divided by their mean length, to keep their squares in the range of a float.
+  double sum_of_lengths = 0;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (auto j = graph.begin(i); j != graph.end(i); ++j)
       sum_of_lengths += (points[*j] - points[i]).norm();
   const double scale =
-      sum_of_lengths > 0 ? std::exp2(std::round(std::log2(number_of_links / sum_of_lengths))) : 1;
+      sum_of_lengths > 0 ? static_cast<double>(graph.neighbor.size()) / sum_of_lengths : 1;
   const auto scaled = [scale](const Vec3& e) { return Eigen::Vector3f((scale * e).cast<float>()); };
-  const std::vector<char> is_summed = with_neighbors<ConcurrencyTag>(graph, is_wanted);
   std::vector<Ring_moments> one_ring(points.size());
   pcs::internal::for_each_index<ConcurrencyTag>(points.size(), [&](std::size_t i) {
-    if (!is_summed[i])
-      return;
     Ring_moments& m = one_ring[i];
     m.count = 1 + static_cast<float>(graph.degree(i));
     for (auto j = graph.begin(i); j != graph.end(i); ++j) {
@@ -111,7 +99,7 @@ std::vector<Surface_normal> surface_normals(const std::vector<Vec3>& points,
   });
   std::vector<Surface_normal> normal(points.size());
   pcs::internal::for_each_index<ConcurrencyTag>(points.size(), [&](std::size_t i) {
-    if (!is_wanted[i] || graph.degree(i) < 2)
+    if (graph.degree(i) < 2)
       return;
     Ring_moments m = one_ring[i];
     for (auto j = graph.begin(i); j != graph.end(i); ++j)
@@ -132,13 +120,10 @@ std::vector<Surface_normal> surface_normals(const std::vector<Vec3>& points,
 /// sheet, half of the neighbourhood is missing, and a single estimate may be tangent to the sheet.
 template <class ConcurrencyTag>
 std::vector<Surface_normal> settled_normals(const Proximity_graph& graph,
-                                            const std::vector<Surface_normal>& normal,
-                                            const std::vector<char>& is_wanted)
+                                            const std::vector<Surface_normal>& normal)
 {
   std::vector<Surface_normal> settled(normal.size());
   pcs::internal::for_each_index<ConcurrencyTag>(normal.size(), [&](std::size_t i) {
-    if (!is_wanted[i])
-      return;
     const Surface_normal* best = &normal[i];
     for (auto j = graph.begin(i); j != graph.end(i); ++j)
       if (normal[*j].confidence > best->confidence)
@@ -159,20 +144,6 @@ std::vector<Surface_normal> settled_normals(const Proximity_graph& graph,
     settled[i].confidence = std::sqrt(length / static_cast<float>(graph.degree(i) + 1));
   });
   return settled;
-}
-
-/// Returns the normals of the points of `is_wanted`: estimated, then averaged twice.
-template <class ConcurrencyTag>
-std::vector<Surface_normal> normals_of_some(const std::vector<Vec3>& points,
-                                            const Proximity_graph& graph,
-                                            const std::vector<char>& is_wanted)
-{
-  const std::vector<char> first = with_neighbors<ConcurrencyTag>(graph, is_wanted);
-  const std::vector<char> second = with_neighbors<ConcurrencyTag>(graph, first);
-  const std::vector<Surface_normal> normal = surface_normals<ConcurrencyTag>(points, graph, second);
-  return settled_normals<ConcurrencyTag>(graph,
-                                         settled_normals<ConcurrencyTag>(graph, normal, first),
-                                         is_wanted);
 }
 
 /// Disjoint sets of points with their sizes.
@@ -261,8 +232,7 @@ inline void keep_clumps(const std::vector<Vec3>& points,
   occur between sheets whose distance is close to the point spacing, because the nearest neighbours
   of a point then include points of the other sheet.
 
-  Points in spatial order are faster: points of flat blocks then need no normals of their own. Links
-  in volumes, on lines and of outliers are kept, because there is no surface. No point loses
+  Links in volumes, on lines and of outliers are kept, because there is no surface. No point loses
   all its links. O(n k).
   \return the number of links removed [count]
 */
@@ -271,23 +241,24 @@ std::size_t drop_short_cuts(const std::vector<Vec3>& points, Proximity_graph& gr
 {
   using internal::Surface_normal;
   constexpr float smallest_confidence = 0.05f;
-  std::vector<char> is_suspected, is_wanted;
-  internal::mark_suspected<ConcurrencyTag>(points, graph, is_suspected, is_wanted);
-  const std::vector<Surface_normal> normal =
-      internal::normals_of_some<ConcurrencyTag>(points, graph, is_wanted);
+  std::vector<Surface_normal> normal = internal::surface_normals<ConcurrencyTag>(points, graph);
+  for (int round = 0; round < 2; ++round)
+    normal = internal::settled_normals<ConcurrencyTag>(graph, normal);
 
   const auto leaves_surface = [&](std::size_t i, const Vec3& e) {
     return normal[i].confidence > smallest_confidence &&
            std::abs(normal[i].direction.cast<double>().dot(e)) > smallest_short_cut_sine * e.norm();
   };
-  internal::keep_leaving<ConcurrencyTag>(points, graph, leaves_surface, is_suspected, is_wanted);
-  if (std::find(is_wanted.begin(), is_wanted.end(), 1) == is_wanted.end())
-    return 0;
-  const auto trusted_degree = [&](std::size_t i) {
-    return static_cast<std::size_t>(std::count(is_suspected.begin() + graph.first[i],
-                                               is_suspected.begin() + graph.first[i + 1],
-                                               0));
-  };
+  std::vector<char> is_suspected(graph.neighbor.size(), 0);
+  std::vector<std::uint32_t> trusted_degree(points.size(), 0);
+  pcs::internal::for_each_index<ConcurrencyTag>(points.size(), [&](std::size_t i) {
+    for (std::size_t e = graph.first[i]; e < graph.first[i + 1]; ++e) {
+      const std::size_t j = graph.neighbor[e];
+      const Vec3 edge = points[j] - points[i];
+      is_suspected[e] = leaves_surface(i, edge) && leaves_surface(j, edge) ? 1 : 0;
+      trusted_degree[i] += is_suspected[e] ? 0u : 1u;
+    }
+  });
   const auto have_common_neighbor = [&](std::size_t i, std::size_t j) {
     for (std::size_t a = graph.first[i], b = graph.first[j];
          a < graph.first[i + 1] && b < graph.first[j + 1];) {
@@ -305,12 +276,10 @@ std::size_t drop_short_cuts(const std::vector<Vec3>& points, Proximity_graph& gr
   };
   std::vector<char> is_dropped(graph.neighbor.size(), 0);
   pcs::internal::for_each_index<ConcurrencyTag>(points.size(), [&](std::size_t i) {
-    if (!is_wanted[i])
-      return;
     for (std::size_t e = graph.first[i]; e < graph.first[i + 1]; ++e) {
       const std::size_t j = graph.neighbor[e];
-      is_dropped[e] = is_suspected[e] && trusted_degree(i) >= smallest_remaining_degree &&
-                              trusted_degree(j) >= smallest_remaining_degree &&
+      is_dropped[e] = is_suspected[e] && trusted_degree[i] >= smallest_remaining_degree &&
+                              trusted_degree[j] >= smallest_remaining_degree &&
                               !have_common_neighbor(i, j)
                           ? 1
                           : 0;
