@@ -71,6 +71,21 @@ std::size_t chain_of(const std::vector<Chain>& chains, Index node)
 
 BOOST_AUTO_TEST_SUITE(chains_of_layers)
 
+BOOST_AUTO_TEST_CASE(at_equal_angles_the_child_with_more_points_beyond_continues)
+{
+  // both children have the same height and spread; the second one carries twenty short branches
+  Layers layers;
+  layers.add(none, Vec3(0, 0, 0));
+  const Index fork = layers.add_row(0, Vec3::UnitZ(), 8) + 7;
+  const Index bare = layers.add_row(fork, slanted(-0.3), 30);
+  const Index crowned = layers.add_row(fork, slanted(0.3), 30);
+  for (Index k = 0; k < 20; ++k)
+    layers.add_row(crowned + 5 + k, Vec3::UnitX(), 3);
+  const std::vector<Chain> chains = layers.chains();
+  BOOST_TEST(chain_of(chains, crowned) == chain_of(chains, fork));
+  BOOST_TEST(chain_of(chains, bare) != chain_of(chains, fork));
+}
+
 BOOST_AUTO_TEST_CASE(a_straight_child_continues_the_chain_unless_another_is_much_thicker)
 {
   for (const bool is_thick : {false, true}) {

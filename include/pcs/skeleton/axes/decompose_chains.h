@@ -36,9 +36,10 @@ constexpr double spread_offset = 0.4;
 /// Distance to a child, in thicknesses of a level set, beyond which there is a gap, and least
 /// cosine of the angles between the gap and the chain on both sides [-].
 constexpr double gap_layers = 1.5, gap_cosine = 0.8;
-/// Weight of the cosine between both directions against the logarithms of height and spread:
-/// branches are straight [-].
-constexpr double chain_straightness = 5;
+/// Weights of the cosine between both directions, since branches are straight, and of the
+/// logarithm of the height times the number of points beyond, against the logarithm of the spread
+/// [-].
+constexpr double chain_straightness = 5, chain_size = 0.25;
 
 namespace internal {
 
@@ -52,6 +53,18 @@ inline std::vector<double> heights(const Layer_tree& tree)
       h = std::max(h, height[v] + (tree.center[v] - tree.center[tree.parent[v]]).norm());
     }
   return height;
+}
+
+/// Returns the number of points of each node and its descendants.
+inline std::vector<double> points_beyond(const Layer_tree& tree)
+{
+  std::vector<double> count(tree.size(), 0);
+  for (std::size_t v = tree.size(); v-- > 0;) {
+    count[v] += double(tree.count(static_cast<Index>(v)));
+    if (tree.parent[v] != none)
+      count[tree.parent[v]] += count[v];
+  }
+  return count;
 }
 
 inline Vec3 direction_to(const Layer_tree& tree, Index node)
@@ -69,7 +82,11 @@ class Main_child
 {
 public:
   Main_child(const Scan& scan, const Layer_tree& tree)
-    : m_scan(scan), m_tree(tree), m_height(heights(tree)), m_children(tree.size(), tree.parent)
+    : m_scan(scan),
+      m_tree(tree),
+      m_height(heights(tree)),
+      m_count(points_beyond(tree)),
+      m_children(tree.size(), tree.parent)
   {
   }
 
@@ -88,7 +105,8 @@ public:
       if (is_crooked_gap(v, c, along))
         continue;
       const double u = m_scan.spacing;
-      const double score = 0.5 * std::log(m_height[c] / u + layer_thickness) +
+      const double height = m_height[c] / u + layer_thickness;
+      const double score = chain_size * std::log(height * m_count[c]) +
                            std::log(m_tree.spread[c] / u + spread_offset) +
                            chain_straightness * cosine;
       if (best == none || score > best_score) {
@@ -127,7 +145,7 @@ private:
 
   const Scan& m_scan;
   const Layer_tree& m_tree;
-  std::vector<double> m_height;
+  std::vector<double> m_height, m_count;
   Index_groups m_children;
 };
 

@@ -5,6 +5,7 @@
 #ifndef PCS_SKELETON_BRANCHING_BUILD_BRANCH_TREE_H
 #define PCS_SKELETON_BRANCHING_BUILD_BRANCH_TREE_H
 
+#include <pcs/skeleton/branching/align_base_with_root.h>
 #include <pcs/skeleton/branching/fuse_axes.h>
 #include <pcs/skeleton/branching/group_branches.h>
 #include <pcs/skeleton/branching/join_axes.h>
@@ -28,6 +29,7 @@ struct Branching_options
 {
   Fusion_options fusion;
   Joint_options joints;
+  Base_alignment_options base;
   Stub_options stubs;
 };
 
@@ -40,20 +42,22 @@ struct Joined_axes
   Branch_tree tree;
 };
 
-/// Joins the unchanged axes into one tree, which begins with the axis at the points `root`.
+/// Joins the axes into one tree, which begins with the axis at the points `root`. The base of this
+/// axis is aligned with the root; other axes remain unchanged.
 template <class ConcurrencyTag>
 void join_axes(const Scan& scan,
-               const Axis_set& axes,
                const std::vector<Index>& root,
                const std::optional<Vec3>& hint,
-               const Joint_options& options,
+               const Branching_options& options,
+               Axis_set& axes,
                Joined_axes& joined)
 {
   joined.root = root_axis(scan, axes, root, hint);
-  const Axis_joiner joiner(axes, scan.spacing, options);
+  const bool is_reversed = is_root_reversed(scan, axes.axes[joined.root].axis, root);
+  align_base_with_root(scan, root, joined.root, is_reversed, options.base, axes);
+  const Axis_joiner joiner(axes, scan.spacing, options.joints);
   joined.joints = joiner.template run<ConcurrencyTag>(joined.root);
-  joined.joints[joined.root].is_reversed =
-      is_root_reversed(scan, axes.axes[joined.root].axis, root);
+  joined.joints[joined.root].is_reversed = is_reversed;
   joined.tree = branch_tree(axes, joined.joints, joined.root, scan.spacing);
 }
 
@@ -71,9 +75,7 @@ bool build_branch_tree(const Scan& scan,
                        Axis_set& axes,
                        Joined_axes& joined)
 {
-  const auto join = [&] {
-    join_axes<ConcurrencyTag>(scan, axes, root, hint, options.joints, joined);
-  };
+  const auto join = [&] { join_axes<ConcurrencyTag>(scan, root, hint, options, axes, joined); };
   join();
   while (joined.regroupings + 1 < options.joints.rounds) {
     if (!progress(double(joined.regroupings + 1) / options.joints.rounds))
