@@ -46,6 +46,9 @@ constexpr std::size_t max_cells = std::size_t(1) << 20;
 
 constexpr std::size_t max_tiles = 10000;
 
+/// The exit code if inputs were left out.
+constexpr int incomplete_plot = 3;
+
 struct Options
 {
   std::vector<std::string> inputs;
@@ -53,7 +56,7 @@ struct Options
   std::int64_t tile_points = 5000000, open_files = 100;
   std::optional<double> buffer;
   double cell = 1;
-  bool is_quiet = false;
+  bool do_skip_damaged = false, is_quiet = false;
 };
 
 const char* help()
@@ -70,6 +73,9 @@ of the highest and lowest points of a cell; 99 % of the points are in cells with
 Memory: at most 1,048,576 cells (150 MB), a chunk of 262,144 points, and 0.5 MB per open file. If
 more cells have points, the cell size is doubled until they are fewer.
 Files are read twice, and once more for every further --open-files tiles.
+Damaged scans: by default they end the run, and no tile remains. With --skip-damaged, a scan that
+cannot be read to its end is named on stderr and in tiles.json, all its points are left out, and
+the exit code is 3.
 
 For example:
   tile_points --input plot_a.laz plot_b.laz --folder tiles
@@ -77,7 +83,7 @@ For example:
   (the same for all other tiles)
   merge_tiles --tiles tiles/tiles.json --results segmented --table trees.csv
 
-Exit codes: 0 success, 1 bad input or usage, 2 internal error.)";
+Exit codes: 0 success, 1 bad input or usage, 2 internal error, 3 tiles without damaged scans.)";
 }
 
 void declare(CLI::App& app, Options& options)
@@ -99,6 +105,7 @@ void declare(CLI::App& app, Options& options)
   app.add_option("--open-files", options.open_files, "tiles that are written in one pass")
       ->check(CLI::Range(std::int64_t(1), std::int64_t(max_tiles)))
       ->capture_default_str();
+  app.add_flag("--skip-damaged", options.do_skip_damaged, "leave out scans that cannot be read");
   app.add_flag("--quiet", options.is_quiet, "print errors only");
 }
 
@@ -153,11 +160,11 @@ struct Survey
   double height = 0;              ///< within cells [L]
 };
 
-Survey survey(Point_files& files, const Options& options, std::size_t axis_up)
+/// Counts the points of all files. Returns whether none was left out.
+bool count(Point_files& files, std::size_t axis_up, Survey& result)
 {
-  Survey result{Count_grid(options.cell, max_cells), {}};
   bool is_first = true;
-  files.count([&](const pcs::IO::Point_table& chunk, std::uint64_t first, const auto& file) {
+  return files.count([&](const pcs::IO::Point_table& chunk, std::uint64_t first, const auto& file) {
     for (std::size_t i = 0; i < chunk.number_of_points(); ++i) {
       const auto& p = chunk.points()[i];
       for (int axis = 0; axis < 3; ++axis)
@@ -173,6 +180,13 @@ Survey survey(Point_files& files, const Options& options, std::size_t axis_up)
       result.grid.add(horizontal(p, axis_up), height);
     }
   });
+}
+
+Survey survey(Point_files& files, const Options& options, std::size_t axis_up)
+{
+  Survey result{Count_grid(options.cell, max_cells), {}};
+  while (!count(files, axis_up, result))
+    result = {Count_grid(options.cell, max_cells), {}};
   if (files.number_of_points() == 0)
     throw pcs::Invalid_input("the inputs have no points");
   result.cells = result.grid.take();
@@ -204,7 +218,10 @@ Json to_json(const Point_files& files)
   Json inputs = Json::array();
   for (const Point_files::File& file : files.files())
     inputs.push_back({{"file", file.path}, {"points", file.number_of_points}});
-  return {{"inputs", inputs}, {"points", files.number_of_points()}};
+  Json skipped = Json::array();
+  for (const Point_files::Skipped& file : files.skipped())
+    skipped.push_back({{"file", file.path}, {"reason", file.reason}});
+  return {{"inputs", inputs}, {"skipped", skipped}, {"points", files.number_of_points()}};
 }
 
 /// `counts`: the number of points of each tile.
@@ -226,7 +243,10 @@ Json to_json(const Tile_tree& tree, const std::vector<std::uint64_t>& counts)
 std::vector<std::string>
 all_warnings(const Point_files& files, const Tile_tree& tree, const Options& options, double cell)
 {
-  std::vector<std::string> warnings = files.warnings();
+  std::vector<std::string> warnings;
+  for (const Point_files::Skipped& file : files.skipped())
+    warnings.push_back("a damaged scan is left out: " + file.reason);
+  warnings.insert(warnings.end(), files.warnings().begin(), files.warnings().end());
   for (const char* name : {"index", "is_core"})
     if (files.shared().has(name))
       warnings.push_back("the property '" + std::string(name) + "' of the input is replaced");
@@ -269,7 +289,8 @@ Tile_tree make_tiles(Survey& found, const Options& options, double buffer)
   return tree;
 }
 
-void run(const Options& options)
+/// Returns the exit code.
+int run(const Options& options)
 {
   check(options);
   pcs::internal::Stopwatch all, stage;
@@ -281,7 +302,7 @@ void run(const Options& options)
   distinct.add_output(options.report);
   distinct.add_output(manifest_path);
 
-  Point_files files(options.inputs, options.is_quiet);
+  Point_files files(options.inputs, options.is_quiet, options.do_skip_damaged);
   make_folder(options.folder);
   Tile_files(options.folder, files.shared(), 0).check_writable();
   Report_file manifest_file(manifest_path);
@@ -316,12 +337,14 @@ void run(const Options& options)
   manifest_file.commit(manifest);
   tiles.keep();
 
-  for (const std::string& warning : warnings)
-    if (!options.is_quiet)
-      std::cerr << "tile_points: warning: " << warning << '\n';
+  const std::size_t number_of_skipped = files.skipped().size(); // the first warnings
+  for (std::size_t w = 0; w < warnings.size(); ++w)
+    if (!options.is_quiet || w < number_of_skipped)
+      std::cerr << "tile_points: warning: " << warnings[w] << '\n';
   if (!options.is_quiet)
     std::cout << "tiles " << tree.tiles().size() << ", points " << files.number_of_points()
               << ", buffer " << buffer << ", seconds " << manifest["seconds"] << '\n';
+  return number_of_skipped > 0 ? incomplete_plot : 0;
 }
 
 } // namespace program
@@ -331,8 +354,5 @@ int main(int argc, char** argv)
   program::Options options;
   CLI::App app("Cuts the scan of a plot of any size into tiles with buffers.", "tile_points");
   program::declare(app, options);
-  return program::run_program(app, argc, argv, [&] {
-    program::run(options);
-    return true;
-  });
+  return program::run_program(app, argc, argv, [&] { return program::run(options); });
 }

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Tests examples/plot_workflow: a virtual plot of four trees, with --cores 1 and --cores 2, with a damaged tile, and
-# after the damage is repaired.
+# Tests examples/plot_workflow: a virtual plot of four trees, with --cores 1 and --cores 2, with a damaged tile, after
+# the damage is repaired, with a damaged scan, and with damaged tiles only.
 #
 #   test/examples/run_plot_workflow.sh PROGRAMS FOLDER
 #
@@ -85,4 +85,31 @@ expected=0
 run bad --cores 1 repeat_failures
 run bad --cores 2
 same one bad
+
+# A damaged scan that is left out: it is named in the tables, and the other scans have the same labels as without it.
+mkdir -p damaged
+printf 'ply\nformat ascii 1.0\nelement vertex 2\n' > damaged/cut.ply
+inputs='inputs=["../damaged/*","../scans/*.xyz"]'
+expected=1
+run scan --cores 1 --config "$inputs"
+grep -q "Without tiles" scan.log || fail "a damaged scan does not end the run by default"
+run scan --cores 2 --config "$inputs" skip_damaged=true
+[[ $(grep -c "^tile,../damaged/cut.ply," scan/results/failures.csv) -eq 1 ]] || fail "the scan is not named"
+trees=$(($(wc -l < one/results/trees.csv) - 1))
+[[ $(grep -c "the damaged scan ../damaged/cut.ply" scan/results/trees.csv) -eq $trees ]] ||
+  fail "the table does not say that the plot is incomplete"
+cmp one/merged/labelled.ply scan/merged/labelled.ply || fail "labels differ without the damaged scan"
+rm damaged/cut.ply
+expected=0
+run scan --cores 1 repeat_failures --config "$inputs" skip_damaged=true
+run scan --cores 1 --config "$inputs" skip_damaged=true
+same one scan
+
+# All tiles are damaged: the message does not say that results are complete.
+expected=0
+run none --cores 1 tiles/tiles.json
+truncate -s 1000 none/tiles/tile_*.ply
+expected=1
+run none --cores 1
+grep -q "the tables and the map have no trees" none.log || fail "the message does not say that there are no trees"
 echo "the plot workflow passed"

@@ -358,6 +358,45 @@ BOOST_AUTO_TEST_CASE(no_tile_remains_if_one_cannot_be_written)
   BOOST_TEST(!has_tiles("tiles"));
 }
 
+BOOST_AUTO_TEST_CASE(damaged_scans_are_left_out_if_wanted)
+{
+  const Table all = make_plot(3000, 5);
+  std::vector<std::size_t> first, last;
+  for (std::size_t i = 0; i < all.number_of_points(); ++i)
+    (i < 1000 ? first : last).push_back(i);
+  pcs::IO::write_points(path("a.ply"), all.select(first));
+  pcs::IO::write_points(path("b.ply"), all.select(last));
+  const std::string whole = content("b.ply");
+  write("cut.ply", whole.substr(0, whole.size() - 5));
+  write("far.xyz", "0 0 0\n1e300 0 0\n");
+  write("no.ply", "ply\n");
+  const std::string options = " --tile-points 400 --buffer 2 --quiet";
+  BOOST_TEST_REQUIRE(run("--input a.ply b.ply --folder whole" + options) == 0, err);
+  BOOST_TEST(manifest("whole")["skipped"].empty());
+  BOOST_TEST_REQUIRE(
+      run("--input a.ply cut.ply no.ply b.ply far.xyz missing.ply --folder part --skip-damaged" +
+          options) == 3,
+      err);
+  const Json m = manifest("part");
+  BOOST_TEST_REQUIRE(m["skipped"].size() == 4u);
+  for (const char* name : {"cut.ply", "no.ply", "far.xyz", "missing.ply"}) {
+    BOOST_TEST(err.find(name) != std::string::npos, name << " in " << err);
+    BOOST_TEST(std::count_if(m["skipped"].begin(),
+                             m["skipped"].end(),
+                             [&](const Json& scan) {
+                               return scan["file"] == name &&
+                                      !scan["reason"].get<std::string>().empty();
+                             }) == 1,
+               name);
+  }
+  // the points that were read before the damage do not remain
+  BOOST_TEST((bytes_of_tiles("part") == bytes_of_tiles("whole")));
+  check_tiles("part", all);
+  BOOST_TEST(run("--input cut.ply far.xyz --folder none --skip-damaged") == 1);
+  BOOST_TEST(err.find("none of the 2 inputs") != std::string::npos, err);
+  BOOST_TEST(!has_tiles("none"));
+}
+
 BOOST_AUTO_TEST_CASE(tiles_of_another_run_are_refused)
 {
   BOOST_TEST_REQUIRE(run("--input in.ply --folder tiles") == 0, err);

@@ -30,7 +30,7 @@ def rounded(value, digits):
     return None if value is None else round(float(value), digits)
 
 
-def row_of(tree, reports, errors, close, lost):
+def row_of(tree, reports, errors, close, lost, skipped):
     """One row: what is not known is None."""
     row = dict.fromkeys(COLUMNS)
     row.update(
@@ -69,6 +69,8 @@ def row_of(tree, reports, errors, close, lost):
     for name, box in lost.items():
         if all(box["low"][k] <= float(tree["xy"[k]]) < box["high"][k] for k in (0, 1)):
             warnings.append(f"{name} nearby has failed; points of the tree may be missing")
+    for scan in skipped:
+        warnings.append(f"the plot is incomplete: the damaged scan {scan} is left out")
     for other in sorted(close.get(row["tree"], ())):
         warnings.append(f"the foot is close to that of tree {other}: perhaps one tree at a border")
     row["warnings"] = "; ".join(warnings)
@@ -173,13 +175,16 @@ def main():
     parser.add_argument("--epsg", type=int, help="code of the coordinate system")
     arguments = parser.parse_args()
 
-    tiles = read_json(arguments.tiles)["tiles"]
+    manifest = read_json(arguments.tiles)
+    tiles, skipped = manifest["tiles"], manifest.get("skipped", [])
     names = [os.path.splitext(tile["file"])[0] for tile in tiles]
-    failures = []
+    failures = [
+        {"step": "tile", "name": scan["file"], "message": scan["reason"]} for scan in skipped
+    ]
     for name in names:
         status = read_json(os.path.join(arguments.status, "segment", name + ".json"))
         failures += status["failures"]
-    failed_tiles = {failure["name"] for failure in failures}
+    failed_tiles = {f["name"] for f in failures if f["step"] == "segment"}
     lost = {t["file"][:-4]: t["buffered"] for t in tiles if t["file"][:-4] in failed_tiles}
     merged = read_json(os.path.join(arguments.status, "merge.json"))
     failures += merged["failures"]
@@ -194,7 +199,10 @@ def main():
         failures += status["failures"]
         errors.update((failure["name"], failure["message"]) for failure in status["failures"])
     with open(arguments.trees, newline="", encoding="utf-8") as file:
-        rows = [row_of(tree, reports, errors, close, lost) for tree in csv.DictReader(file)]
+        rows = [
+            row_of(tree, reports, errors, close, lost, [scan["file"] for scan in skipped])
+            for tree in csv.DictReader(file)
+        ]
 
     texts = {
         "trees.csv": csv_text(COLUMNS, rows),

@@ -25,6 +25,7 @@ TREE_COLUMNS = (
     "tree,x,y,z,radius,diameter_at_breast_height,height,points,tile,parts,is_at_rim,cut_parts,file"
 )
 BAD_INPUT = 1  # exit code of the programs: another attempt has the same result
+INCOMPLETE = 3  # exit code of tile_points: damaged scans are left out and listed in tiles.json
 
 
 class Again(Exception):
@@ -138,7 +139,7 @@ class Runner:
         if code < 0 and not limit:
             limit = f"ended by signal {-code}"
             message = f"{message} {os.path.basename(command[0])}: {limit}".strip()
-        if code not in (0, BAD_INPUT) and not is_last:
+        if code not in (0, BAD_INPUT, INCOMPLETE) and not is_last:
             raise Again(message)
         return code, message
 
@@ -147,7 +148,7 @@ def cut(arguments, runner):
     """Tiles of an earlier run are replaced only by a complete set."""
     remove("tiles.incomplete")
     code, message = runner.run(arguments.command + ["--folder", "tiles.incomplete", "--quiet"])
-    if code != 0:
+    if code not in (0, INCOMPLETE):
         remove("tiles.incomplete")
         sys.exit(f"{message}\nWithout tiles, no other step can run.")
     remove(arguments.folder)
@@ -280,9 +281,19 @@ def check(arguments):
         return
     for failure in failures[:10]:
         print("{step} {name}: {message}".format(**failure), file=sys.stderr)
+    steps = {failure["step"] for failure in failures}
+    if "merge" in steps:
+        state = "no tiles could be merged, so the tables and the map have no trees"
+    elif steps & {"tile", "segment"}:
+        state = (
+            "trees with points in these scans or tiles are missing or cut; the warnings of "
+            "trees.csv name them; all other results are complete"
+        )
+    else:
+        state = "all other results are complete"
     sys.exit(
-        f"{len(failures)} failure(s) are listed in {arguments.failures}; all other results are "
-        "complete. Remove the cause, run `snakemake repeat_failures`, and start the run again."
+        f"{len(failures)} failure(s) are listed in {arguments.failures}; {state}. Remove the "
+        "cause, run `snakemake repeat_failures`, and start the run again."
     )
 
 
@@ -300,6 +311,15 @@ def forget(arguments):
             if os.path.basename(folder) == "segment":
                 remove(os.path.join(arguments.status, "merge.json"))
             remove(arguments.failures)  # Snakemake makes missing inputs only of what is missing
+    try:
+        with open(arguments.tiles, encoding="utf-8") as file:
+            has_skipped = bool(json.load(file).get("skipped"))
+    except OSError:
+        has_skipped = False
+    if has_skipped:
+        count += 1
+        remove(arguments.tiles)
+        remove(arguments.failures)
     print(f"{count} step(s) will be repeated")
 
 
@@ -312,6 +332,7 @@ def main():
     parser.add_argument("--labels", help="merge: name of the file of all points")
     parser.add_argument("--status", help="status file to write; forget: their folder")
     parser.add_argument("--failures", help="the table of failures")
+    parser.add_argument("--tiles", help="forget: the manifest of the tiles")
     parser.add_argument("--log", help="what the program prints is appended here")
     parser.add_argument("--memory-mb", type=int, default=0, help="limit of the memory; 0: none")
     parser.add_argument("--minutes", type=int, default=0, help="limit of the time; 0: none")

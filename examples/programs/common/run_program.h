@@ -16,11 +16,12 @@
 #include <iostream>
 #include <new>
 #include <string>
+#include <type_traits>
 
 namespace program {
 
-/// Parses the options, then calls `work()`, which returns whether it succeeded. Returns 0: success,
-/// 1: invalid input, 2: internal error.
+/// Parses the options, then calls `work()`, which returns whether it succeeded, or an exit code.
+/// Returns 0: success, 1: invalid input, 2: internal error, or the code of `work()`.
 template <class Work>
 int run_program(CLI::App& app, int argc, char** argv, const Work& work)
 {
@@ -39,7 +40,10 @@ int run_program(CLI::App& app, int argc, char** argv, const Work& work)
       for (const std::string& value : option->results())
         if (value.empty()) // for example an undefined variable of a script
           throw pcs::Invalid_input(option->get_name() + " has an empty value");
-    return work() ? 0 : bad_input;
+    if constexpr (std::is_same_v<decltype(work()), bool>)
+      return work() ? 0 : bad_input;
+    else
+      return work();
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0)
       return app.exit(e); // --help, --version

@@ -28,21 +28,28 @@ public:
   /// Points that are in memory at a time.
   static constexpr std::size_t chunk_size = std::size_t(1) << 18;
 
-  /// Opens all files once. Throws `pcs::IO_error`.
-  Point_files(const std::vector<std::string>& paths, bool is_quiet) : m_is_quiet(is_quiet)
+  /// Opens all files once. Throws `pcs::IO_error`; with `do_skip_damaged`, only if no file can be
+  /// read.
+  Point_files(const std::vector<std::string>& paths, bool is_quiet, bool do_skip_damaged = false)
+    : m_is_quiet(is_quiet), m_do_skip_damaged(do_skip_damaged)
   {
-    for (const std::string& path : paths) {
-      if (std::filesystem::exists(path) && !std::filesystem::is_regular_file(path) &&
-          !std::filesystem::is_directory(path))
-        throw pcs::IO_error(path, "is no regular file, but it is read several times");
-      const pcs::IO::Point_reader reader(path);
-      m_files.push_back({path, reader.schema(), 0});
-      m_expected_total += reader.number_of_points().value_or(0);
-      for (const std::string& warning : reader.schema().warnings)
-        m_warnings.push_back(path + ": " + warning);
-    }
+    for (const std::string& path : paths)
+      try {
+        open(path);
+      } catch (const pcs::IO_error& error) {
+        skip(path, error);
+      }
     find_shared();
   }
+
+  /// A file that is left out because it cannot be read.
+  struct Skipped
+  {
+    std::string path, reason;
+  };
+
+  /// Returns the files that are left out, in the order in which they were found.
+  const std::vector<Skipped>& skipped() const { return m_skipped; }
 
   struct File
   {
@@ -61,21 +68,27 @@ public:
   /// Returns sentences on data that are left out.
   const std::vector<std::string>& warnings() const { return m_warnings; }
 
-  /// Calls `use(chunk, index of its first point, file)` for all points, the first time.
+  /// Calls `use(chunk, index of its first point, file)` for all points, the first time. Returns
+  /// whether no file was left out; else the points of damaged files were used, too, and the caller
+  /// counts again without them.
   template <class Use>
-  void count(const Use& use)
+  bool count(const Use& use)
   {
     Progress_line line(!m_is_quiet);
-    for (File& file : m_files) {
-      const std::uint64_t first = m_total;
-      read(file, first, [&](const pcs::IO::Point_table& chunk, std::uint64_t next) {
-        use(chunk, next, file);
-        m_total = next + chunk.number_of_points();
-        if (m_expected_total > 0) // otherwise no file states the number of its points
-          line.show("counting", fraction(m_total, m_expected_total));
-      });
-      file.number_of_points = m_total - first;
-    }
+    m_total = 0;
+    std::vector<File> whole;
+    for (File& file : m_files)
+      try {
+        count(file, use, line);
+        whole.push_back(file);
+      } catch (const pcs::IO_error& error) {
+        skip(file.path, error);
+      }
+    const bool is_complete = whole.size() == m_files.size();
+    m_files = std::move(whole);
+    if (!is_complete)
+      find_shared();
+    return is_complete;
   }
 
   /// Calls `use(chunk, index of its first point)` for all points again. Throws `pcs::IO_error` if
@@ -105,6 +118,37 @@ public:
   }
 
 private:
+  void open(const std::string& path)
+  {
+    if (std::filesystem::exists(path) && !std::filesystem::is_regular_file(path) &&
+        !std::filesystem::is_directory(path))
+      throw pcs::IO_error(path, "is no regular file, but it is read several times");
+    const pcs::IO::Point_reader reader(path);
+    m_files.push_back({path, reader.schema(), 0});
+    m_expected_total += reader.number_of_points().value_or(0);
+  }
+
+  template <class Use>
+  void count(File& file, const Use& use, Progress_line& line)
+  {
+    const std::uint64_t first = m_total;
+    read(file, first, [&](const pcs::IO::Point_table& chunk, std::uint64_t next) {
+      use(chunk, next, file);
+      m_total = next + chunk.number_of_points();
+      if (m_expected_total > 0) // otherwise no file states the number of its points
+        line.show("counting", fraction(m_total, m_expected_total));
+    });
+    file.number_of_points = m_total - first;
+  }
+
+  /// Called by the handler of an error, which is thrown again if the file is not left out.
+  void skip(const std::string& path, const pcs::IO_error& error)
+  {
+    if (!m_do_skip_damaged)
+      throw;
+    m_skipped.push_back({path, error.what()});
+  }
+
   static double fraction(std::uint64_t part, std::uint64_t total)
   {
     return std::min(1.0, static_cast<double>(part) / static_cast<double>(total));
@@ -122,6 +166,15 @@ private:
   void find_shared()
   {
     m_shared.properties.clear();
+    m_warnings.clear();
+    m_left_out.clear();
+    if (m_files.empty())
+      throw pcs::IO_error(m_skipped.front().path,
+                          "none of the " + std::to_string(m_skipped.size()) +
+                              " inputs can be read; " + m_skipped.front().reason);
+    for (const File& file : m_files)
+      for (const std::string& warning : file.schema.warnings)
+        m_warnings.push_back(file.path + ": " + warning);
     for (pcs::IO::Property_description p : m_files.front().schema.properties) {
       if (pcs::IO::is_coordinate_name(p.name))
         p.type = pcs::IO::Scalar_type::float64;
@@ -163,8 +216,9 @@ private:
     }
   }
 
-  bool m_is_quiet;
+  bool m_is_quiet, m_do_skip_damaged;
   std::vector<File> m_files;
+  std::vector<Skipped> m_skipped;
   pcs::IO::Point_schema m_shared;
   std::vector<std::string> m_warnings, m_left_out;
   std::uint64_t m_expected_total = 0; ///< of the files that state their number of points

@@ -72,6 +72,8 @@ public:
         top.fail_expected("the manifest of tile_points with the key " + std::string(key));
     m_number_of_points = read_count(top["points"]);
     read_up(top["up"]);
+    if (top.has("skipped"))
+      read_skipped(top["skipped"]);
     const Json_value tiles = top["tiles"];
     if (!tiles.json().is_array() || tiles.size() == 0)
       tiles.fail_expected("an array of tiles");
@@ -96,6 +98,8 @@ public:
 
   const std::vector<Listed_tile>& tiles() const { return m_tiles; }
   std::uint64_t number_of_points() const { return m_number_of_points; } ///< of all cores
+  /// Returns the damaged scans whose points are missing in the tiles.
+  const std::vector<std::string>& skipped() const { return m_skipped; }
   const std::string& up() const { return m_up; }
   std::size_t axis_up() const { return static_cast<std::size_t>(m_up.back() - 'x'); }
 
@@ -163,6 +167,19 @@ private:
     value.fail_expected("x, y, z, -x, -y or -z");
   }
 
+  void read_skipped(const Json_value& value)
+  {
+    if (!value.json().is_array())
+      value.fail_expected("an array of damaged scans");
+    for (std::size_t i = 0; i < value.size(); ++i) {
+      const Json_value scan = value[i];
+      scan.object({"file", "reason"});
+      if (!scan.has("file") || !scan["file"].json().is_string())
+        scan.fail_expected("an object with the name of a file");
+      m_skipped.push_back(scan["file"].json().get<std::string>());
+    }
+  }
+
   static Listed_tile read_tile(const Json_value& value)
   {
     value.object({"file", "core", "buffered", "points", "core_points"});
@@ -184,6 +201,7 @@ private:
 
   std::filesystem::path m_folder;
   std::uint64_t m_number_of_points = 0;
+  std::vector<std::string> m_skipped;
   std::string m_up;
   std::vector<Listed_tile> m_tiles;
   Box_2 m_plot;
