@@ -57,8 +57,10 @@ const char* help()
 Results: the folder of segment_trees --tile-results, the same for all tiles.
 Trees: a tree belongs to the tile whose core holds its foot. A tree of another tile is the tree of
 that tile with the nearest foot, by horizontal distance, at most --tolerance away. A tree without
-such a foot is unmatched: its points have no tree, and the report lists it. Trees are numbered from
-0 by descending radius, so the numbers do not depend on the order of the tiles.
+such a foot is unmatched: its points have no tree, and the report lists it. Trees of two tiles with
+feet within --tolerance on both sides of a border are one tree of the tile listed first if they
+share more than half of their points (by samples of segment_trees). Trees are numbered from 0 by
+descending radius, so the numbers do not depend on the order in which tiles were segmented.
 Table: one row per tree (CSV): tree, x, y, z (of the foot), radius, diameter_at_breast_height,
 height, points, tile, parts (tiles whose cores have points of it), is_at_rim (it touches the outer
 rim of the buffer of its tile), cut_parts (other tiles where it does), file.
@@ -214,6 +216,8 @@ std::vector<std::string>
 all_warnings(const Tile_manifest& manifest, const Options& options, const Merged_plot& plot)
 {
   std::vector<std::string> warnings;
+  for (const std::string& scan : manifest.skipped())
+    warnings.push_back("the plot is incomplete: tile_points left out the damaged scan " + scan);
   for (const Failure& failure : plot.failures)
     warnings.push_back(failure.tile + " has no result: " + failure.reason);
   const std::string tolerance = Ordered_json(plot.tolerance).dump();
@@ -230,9 +234,9 @@ all_warnings(const Tile_manifest& manifest, const Options& options, const Merged
     items.push_back(std::to_string(a) + " and " + std::to_string(b));
   if (!items.empty())
     warnings.push_back(std::to_string(items.size()) +
-                       " pair(s) of trees of different tiles have "
-                       "feet within " +
-                       tolerance + ", perhaps one tree at a border: " + list(items));
+                       " pair(s) of trees of different tiles have feet within " + tolerance +
+                       ", but do not share their points: " + list(items) +
+                       "; look at them, perhaps they are one tree at a border");
   items.clear();
   for (std::size_t p = 0; p < plot.trees->trees().size(); ++p)
     if (plot.trees->trees()[p].is_at_rim)
@@ -295,7 +299,13 @@ Ordered_json to_json(const Tile_manifest& manifest, const Options& options, cons
                          {"tree", k},
                          {"foot", plot.tiles.results()[t]->trees[k].foot},
                          {"points", plot.tiles.parts(t)[k].number_of_points}});
+  Ordered_json joined = Ordered_json::array();
+  for (const Plot_trees::Joined_tree& tree : plot.trees->joined())
+    joined.push_back({{"tree", tree.tree},
+                      {"tile", manifest.tiles()[tree.tile].file},
+                      {"tree_of_tile", tree.tree_of_tile}});
   return {{"tiles", manifest.tiles().size()},
+          {"skipped_scans", manifest.skipped()},
           {"failed_tiles", failures},
           {"points", plot.number_of_points},
           {"missing_points", manifest.number_of_points() - plot.number_of_points},
@@ -304,6 +314,7 @@ Ordered_json to_json(const Tile_manifest& manifest, const Options& options, cons
           {"tolerance", plot.tolerance},
           {"unmatched_points", plot.unmatched_points},
           {"unmatched_trees", unmatched},
+          {"joined_trees", joined},
           {"close_feet", plot.trees->twins()},
           {"warnings", all_warnings(manifest, options, plot)}};
 }
@@ -366,8 +377,9 @@ bool run(const Options& options)
   json["seconds"] = watch.lap();
   if (report)
     report->commit(json);
-  for (std::size_t w = 0; w < json["warnings"].size(); ++w) // those of failed tiles are the first
-    if (!options.is_quiet || w < plot.failures.size())
+  const std::size_t important = manifest.skipped().size() + plot.failures.size(); // the first ones
+  for (std::size_t w = 0; w < json["warnings"].size(); ++w)
+    if (!options.is_quiet || w < important)
       std::cerr << "merge_tiles: warning: " << json["warnings"][w].get<std::string>() << '\n';
   if (!options.is_quiet)
     std::cout << "trees " << plot.points.size() << ", unassigned points " << plot.unassigned_points

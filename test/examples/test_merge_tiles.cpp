@@ -19,12 +19,14 @@
 #include <examples/Program_run.h>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <random>
 #include <scan/tree_foot.h>
 #include <sstream>
 #include <string>
+#include <tiling/Index_sample.h>
 #include <tiling/Tile_manifest.h>
 #include <tiling/Tile_result.h>
 #include <vector>
@@ -126,11 +128,23 @@ struct Merge_run : Program_run
       if (!has_core_foot(tile, order[k]))
         found.foot[0] += shift * (engine() % 2 == 0 ? 1 : -1);
       found.is_foot_in_core = has_core_foot(tile, order[k]);
+      if (order[k] == 0 && first_foot_in.count(tile) > 0) {
+        found.foot = first_foot_in.at(tile);
+        found.is_foot_in_core = true;
+      }
       found.radius = 1 - 0.05 * double(order[k]);
       found.diameter_at_breast_height = found.radius / 3;
       found.is_at_rim = order[k] == 7;
       result.trees.push_back(found);
     }
+    if (has_samples)
+      for (std::size_t k = 0; k < order.size(); ++k) {
+        program::Index_sample sample;
+        for (const std::uint32_t i : index)
+          if (trees[i] == std::int32_t(order[k]))
+            sample.add(i);
+        result.trees[k].sample = sample.indices();
+      }
     for (std::size_t i = 0; i < index.size(); ++i) {
       if (is_core[i] == 0)
         continue;
@@ -172,6 +186,8 @@ struct Merge_run : Program_run
 
   std::mt19937 engine{7};
   std::vector<std::array<double, 3>> feet;
+  std::map<std::size_t, std::array<double, 3>> first_foot_in; ///< foot of tree 0, by tile
+  bool has_samples = false;
   std::vector<std::int32_t> trees; ///< of the points of the plot
   Table plot;
   Json manifest;
@@ -353,10 +369,87 @@ BOOST_AUTO_TEST_CASE(feet_of_different_tiles_that_are_near_are_listed)
   feet[1] = feet[0];
   feet[1][0] += 0.2;
   BOOST_TEST_REQUIRE(owner_of(0) != owner_of(1));
+  has_samples = true;
   write_results("results", 1, 0);
   BOOST_TEST_REQUIRE(run("--tiles tiles/tiles.json --results results --report r.json") == 0, err);
   BOOST_TEST(Json::parse(content("r.json"))["close_feet"] == Json::parse("[[0, 1]]"));
-  BOOST_TEST(err.find("perhaps one tree at a border: 0 and 1") != std::string::npos, err);
+  BOOST_TEST(err.find("do not share their points: 0 and 1") != std::string::npos, err);
+}
+
+BOOST_AUTO_TEST_CASE(a_tree_that_is_found_on_both_sides_of_a_border_is_one_tree)
+{
+  // each of two tiles finds tree 0 in its own core
+  const std::size_t one = owner_of(0);
+  const double border = manifest["tiles"][one]["core"]["high"][0];
+  feet[0][0] = border + 0.1;
+  const std::size_t other = owner_of(0);
+  BOOST_TEST_REQUIRE(one < other);
+  first_foot_in[other] = feet[0];
+  feet[0][0] = border - 0.1;
+  first_foot_in[one] = feet[0];
+  const std::string tiles = "--tiles tiles/tiles.json --report r.json --points out.ply ";
+  const auto labels = [this] {
+    return pcs::IO::read_points(path("out.ply")).property<std::int32_t>("tree");
+  };
+  write_results("without", 1);
+  BOOST_TEST_REQUIRE(run(tiles + "--results without --table without.csv") == 0, err);
+  BOOST_TEST(table("without.csv").size() == number_of_trees + 2); // nothing is known about points
+  BOOST_TEST(Json::parse(content("r.json"))["close_feet"].size() == 1u);
+  BOOST_TEST((labels() != trees));
+
+  has_samples = true;
+  for (unsigned seed = 1; seed < 3; ++seed) {
+    const std::string where = "with_" + std::to_string(seed);
+    write_results(where, seed);
+    BOOST_TEST_REQUIRE(run(tiles + "--results " + where + " --table " + where + ".csv") == 0, err);
+    report = Json::parse(content("r.json"));
+    BOOST_TEST(report["close_feet"].empty());
+    BOOST_TEST_REQUIRE(report["joined_trees"].size() == 1u);
+    BOOST_TEST(report["joined_trees"][0]["tree"] == 0);
+    BOOST_TEST(report["joined_trees"][0]["tile"] == name_of(other));
+    BOOST_TEST((labels() == trees));
+  }
+  const auto rows = table("with_1.csv");
+  BOOST_TEST_REQUIRE(rows.size() == number_of_trees + 1);
+  BOOST_TEST(std::stod(rows[1][1]) == feet[0][0]);
+  BOOST_TEST(rows[1][8] == name_of(one));
+  BOOST_TEST((content("with_1.csv") == content("with_2.csv")));
+}
+
+BOOST_AUTO_TEST_CASE(overlaps_are_estimated_from_samples)
+{
+  // [0, b) and [a, a + size): the overlap relative to the smaller set is known
+  const auto sample = [](std::uint64_t first, std::uint64_t end) {
+    program::Index_sample result;
+    for (std::uint64_t i = end; i > first; --i)
+      result.add(i - 1);
+    return result.indices();
+  };
+  const auto overlap = [](const auto& a, const auto& b) {
+    return program::Index_sample::overlap(a, b);
+  };
+  const auto all = sample(0, 100000);
+  BOOST_TEST(all.size() == program::Index_sample::size);
+  BOOST_TEST(overlap(all, all) == 1);
+  BOOST_TEST(overlap(all, sample(100000, 200000)) == 0);
+  BOOST_TEST(std::abs(overlap(all, sample(20000, 120000)) - 0.8) < 0.2);
+  BOOST_TEST(std::abs(overlap(all, sample(80000, 180000)) - 0.2) < 0.2);
+  BOOST_TEST(overlap(sample(0, 10), sample(5, 15)) == 0.5);
+  BOOST_TEST(overlap(all, sample(0, 0)) == 0);
+}
+
+BOOST_AUTO_TEST_CASE(damaged_scans_that_were_left_out_are_named)
+{
+  write_results("results", 1);
+  Json incomplete = manifest;
+  incomplete["skipped"] = {{{"file", "station_3.laz"}, {"reason", "is cut"}}};
+  write("tiles/tiles.json", incomplete.dump());
+  BOOST_TEST_REQUIRE(run("--tiles tiles/tiles.json --results results --report r.json --quiet") == 0,
+                     err);
+  BOOST_TEST(err.find("incomplete") != std::string::npos, err);
+  BOOST_TEST(err.find("station_3.laz") != std::string::npos, err);
+  report = Json::parse(content("r.json"));
+  BOOST_TEST(report["skipped_scans"] == Json::parse("[\"station_3.laz\"]"));
 }
 
 BOOST_AUTO_TEST_CASE(a_foot_outside_the_plot_belongs_to_the_nearest_core)

@@ -25,6 +25,7 @@
 #include <optional>
 #include <scan/tree_foot.h>
 #include <string>
+#include <tiling/Index_sample.h>
 #include <vector>
 
 namespace test_segment_trees_program {
@@ -181,7 +182,7 @@ BOOST_AUTO_TEST_CASE(a_tile_gives_the_trees_of_its_core)
       err);
   const auto manifest = nlohmann::json::parse(content("tiles/tiles.json"));
   BOOST_TEST_REQUIRE(manifest["tiles"].size() > 1u);
-  std::size_t number_of_own_feet = 0, number_of_cut_trees = 0;
+  std::size_t number_of_own_feet = 0, number_of_cut_trees = 0, number_of_samples = 0;
   for (const auto& row : manifest["tiles"]) {
     const std::string name = row["file"];
     BOOST_TEST_REQUIRE(run("--input tiles/" + name +
@@ -235,6 +236,21 @@ BOOST_AUTO_TEST_CASE(a_tile_gives_the_trees_of_its_core)
         is_own = is_own && row["core"]["low"][axis] <= found["foot"][axis] &&
                  found["foot"][axis] < row["core"]["high"][axis];
       BOOST_TEST(found["is_foot_in_core"] == is_own);
+      bool is_near_border = false;
+      for (std::size_t axis = 0; axis < 2; ++axis)
+        is_near_border =
+            is_near_border ||
+            found["foot"][axis].get<double>() < row["core"]["low"][axis].get<double>() + 1.3 ||
+            found["foot"][axis].get<double>() > row["core"]["high"][axis].get<double>() - 1.3;
+      BOOST_TEST(found.contains("sample") == (is_own && is_near_border));
+      if (found.contains("sample")) {
+        program::Index_sample sample; // of the points in core and buffer
+        for (std::size_t i = 0; i < tree.size(); ++i)
+          if (tree[i] == std::int32_t(t))
+            sample.add(all.property<std::uint32_t>("index")[i]);
+        BOOST_TEST((found["sample"].get<std::vector<std::uint64_t>>() == sample.indices()));
+        ++number_of_samples;
+      }
       number_of_own_feet += is_own;
       number_of_cut_trees += is_at_rim[t] && core_points[t] > 0;
       if (is_at_rim[t] && core_points[t] > 0)
@@ -243,6 +259,7 @@ BOOST_AUTO_TEST_CASE(a_tile_gives_the_trees_of_its_core)
   }
   BOOST_TEST(number_of_own_feet >= 2u);
   BOOST_TEST(number_of_cut_trees > 0u);
+  BOOST_TEST(number_of_samples > 0u);
 }
 
 BOOST_AUTO_TEST_CASE(a_tile_without_trees_is_a_result)

@@ -5,6 +5,7 @@
 #ifndef PCS_EXAMPLES_PROGRAMS_TILING_PLOT_TREES_H
 #define PCS_EXAMPLES_PROGRAMS_TILING_PLOT_TREES_H
 
+#include "tiling/Index_sample.h"
 #include "tiling/Tile_manifest.h"
 #include "tiling/Tile_result.h"
 #include "tiling/horizontal.h"
@@ -16,7 +17,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 #include <optional>
+#include <set>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -36,9 +39,11 @@ struct Plot_tree
 
 /*!
   A tree of a tile whose foot is in another core is the tree of that tile with the nearest foot, by
-  horizontal distance. Without such a foot within the tolerance it is unmatched. The trees are in
-  descending order of radius, and of equal radius in the order of their feet, so they do not depend
-  on the order of the tiles.
+  horizontal distance. Without such a foot within the tolerance it is unmatched. A tree whose foot
+  is at a border of cores may be found on both sides: trees of two tiles whose feet are within the
+  tolerance, and which share most of their points, are one tree of the tile with the smaller number.
+  The trees are in descending order of radius, and of equal radius in the order of their feet, so
+  they do not depend on the order in which the tiles were segmented.
 */
 class Plot_trees
 {
@@ -46,6 +51,15 @@ public:
   using Results = std::vector<std::optional<Tile_result>>; ///< by tile; empty: missing
   /// No tree of the plot.
   static constexpr std::int32_t no_tree = -1;
+  /// Trees of two tiles with a larger overlap are the same [-]: the overlap of the points of two
+  /// trees is close to 0, that of one tree in two tiles close to 1.
+  static constexpr double same_overlap = 0.5;
+
+  /// A tree of a tile that is also a tree of a tile with a smaller number.
+  struct Joined_tree
+  {
+    std::size_t tree = 0, tile = 0, tree_of_tile = 0;
+  };
 
   /// `tolerance`: largest distance of feet of the same tree [L].
   Plot_trees(const Tile_manifest& manifest, const Results& results, double tolerance)
@@ -78,9 +92,11 @@ public:
         const Tree_of_tile& tree = results[t]->trees[k];
         if (owner[t][k] != t)
           m_tree_of[t][k] = nearest(own[owner[t][k]], tree.foot, tolerance);
-        add_part(t, k, tree);
       }
-    find_twins(tolerance);
+    join_twins(results, find_twins(tolerance));
+    m_twins = find_twins(tolerance);
+    for (std::size_t t = 0; t < results.size(); ++t)
+      add_parts(t, results[t]);
   }
 
   const std::vector<Plot_tree>& trees() const { return m_trees; }
@@ -91,9 +107,12 @@ public:
   /// Returns tile and tree of all trees with points in the core that match no tree of the plot.
   const std::vector<std::pair<std::size_t, std::size_t>>& unmatched() const { return m_unmatched; }
 
-  /// Returns pairs of trees of different tiles whose feet are within the tolerance: perhaps one
-  /// tree whose foot is near a border of cores.
+  /// Returns pairs of trees of different tiles whose feet are within the tolerance, although they
+  /// do not share their points.
   const std::vector<std::pair<std::size_t, std::size_t>>& twins() const { return m_twins; }
+
+  /// Returns the trees that are not counted again, in the order of the trees of the plot.
+  const std::vector<Joined_tree>& joined() const { return m_joined; }
 
 private:
   Position_2 position(const std::array<double, 3>& foot) const
@@ -123,21 +142,78 @@ private:
     return best;
   }
 
-  void add_part(std::size_t t, std::size_t k, const Tree_of_tile& tree)
+  /// Adds the parts of the trees in the core of a tile.
+  void add_parts(std::size_t t, const std::optional<Tile_result>& result)
   {
-    if (tree.number_of_core_points == 0)
-      return;
-    if (m_tree_of[t][k] == no_tree) {
-      m_unmatched.emplace_back(t, k);
-      return;
+    std::set<std::int32_t> parts, cut_parts; // several trees of a tile may be one of the plot
+    for (std::size_t k = 0; k < m_tree_of[t].size(); ++k) {
+      const Tree_of_tile& tree = result->trees[k];
+      if (tree.number_of_core_points == 0)
+        continue;
+      if (m_tree_of[t][k] == no_tree) {
+        m_unmatched.emplace_back(t, k);
+        continue;
+      }
+      parts.insert(m_tree_of[t][k]);
+      if (tree.is_at_rim)
+        cut_parts.insert(m_tree_of[t][k]);
     }
-    Plot_tree& own = m_trees[static_cast<std::size_t>(m_tree_of[t][k])];
-    ++own.number_of_parts;
-    own.number_of_cut_parts += tree.is_at_rim && own.tile != t;
+    for (const std::int32_t p : parts)
+      ++m_trees[static_cast<std::size_t>(p)].number_of_parts;
+    for (const std::int32_t p : cut_parts) {
+      Plot_tree& own = m_trees[static_cast<std::size_t>(p)];
+      own.number_of_cut_parts += own.tile != t;
+    }
   }
 
-  void find_twins(double tolerance)
+  /// Makes one tree of twins that share most of their points.
+  void join_twins(const Results& results,
+                  const std::vector<std::pair<std::size_t, std::size_t>>& twins)
   {
+    std::vector<std::size_t> kept(m_trees.size()); // the tree that each tree is a part of
+    std::iota(kept.begin(), kept.end(), std::size_t(0));
+    const auto root = [&kept](std::size_t p) {
+      while (kept[p] != p)
+        p = kept[p];
+      return p;
+    };
+    const auto sample = [&](std::size_t p) -> const std::vector<std::uint64_t>& {
+      return results[m_trees[p].tile]->trees[m_trees[p].tree_of_tile].sample;
+    };
+    for (const auto& [a, b] : twins) {
+      if (Index_sample::overlap(sample(a), sample(b)) <= same_overlap)
+        continue;
+      std::size_t p = root(a), q = root(b);
+      if (m_trees[q].tile < m_trees[p].tile)
+        std::swap(p, q);
+      kept[q] = p;
+    }
+    std::vector<Plot_tree> trees;
+    std::vector<std::int32_t> number(m_trees.size(), no_tree);
+    for (std::size_t p = 0; p < m_trees.size(); ++p)
+      if (kept[p] == p) {
+        number[p] = static_cast<std::int32_t>(trees.size());
+        trees.push_back(m_trees[p]);
+      }
+    for (std::size_t p = 0; p < m_trees.size(); ++p)
+      if (kept[p] != p) {
+        number[p] = number[root(p)];
+        m_joined.push_back(
+            {static_cast<std::size_t>(number[p]), m_trees[p].tile, m_trees[p].tree_of_tile});
+      }
+    for (std::vector<std::int32_t>& trees_of_tile : m_tree_of)
+      for (std::int32_t& p : trees_of_tile)
+        p = p == no_tree ? no_tree : number[static_cast<std::size_t>(p)];
+    m_trees = std::move(trees);
+    std::sort(m_joined.begin(), m_joined.end(), [](const Joined_tree& a, const Joined_tree& b) {
+      return std::tie(a.tree, a.tile, a.tree_of_tile) < std::tie(b.tree, b.tile, b.tree_of_tile);
+    });
+  }
+
+  /// Returns pairs of trees of different tiles whose feet are within the tolerance.
+  std::vector<std::pair<std::size_t, std::size_t>> find_twins(double tolerance) const
+  {
+    std::vector<std::pair<std::size_t, std::size_t>> twins;
     std::vector<std::size_t> order(m_trees.size());
     for (std::size_t p = 0; p < order.size(); ++p)
       order[p] = p;
@@ -150,15 +226,17 @@ private:
         const auto [a, b] = std::minmax(order[i], order[j]);
         if (m_trees[a].tile != m_trees[b].tile &&
             distance(m_trees[a].foot, m_trees[b].foot) <= tolerance)
-          m_twins.emplace_back(a, b);
+          twins.emplace_back(a, b);
       }
-    std::sort(m_twins.begin(), m_twins.end());
+    std::sort(twins.begin(), twins.end());
+    return twins;
   }
 
   std::size_t m_axis_up;
   std::vector<Plot_tree> m_trees;
   std::vector<std::vector<std::int32_t>> m_tree_of;
   std::vector<std::pair<std::size_t, std::size_t>> m_unmatched, m_twins;
+  std::vector<Joined_tree> m_joined;
 };
 
 } // namespace program

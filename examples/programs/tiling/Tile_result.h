@@ -6,6 +6,7 @@
 #define PCS_EXAMPLES_PROGRAMS_TILING_TILE_RESULT_H
 
 #include "common/Json_value.h"
+#include "tiling/Index_sample.h"
 #include "tiling/Tile.h"
 #include "tiling/Tile_manifest.h"
 #include <pcs/IO/points/Point_table.h>
@@ -31,6 +32,9 @@ struct Tree_of_tile
   std::uint64_t number_of_core_points = 0;
   bool is_foot_in_core = false;
   bool is_at_rim = false; ///< touches the outer rim of the buffer where the plot continues
+  /// Indices of points of the tile and its buffer, see `Index_sample`; empty away from the core's
+  /// border.
+  std::vector<std::uint64_t> sample;
 };
 
 /// The result of a tile without its points.
@@ -67,6 +71,8 @@ inline nlohmann::ordered_json to_json(const Tile_result& result)
                      {"diameter_at_breast_height", tree.diameter_at_breast_height},
                      {"core_points", tree.number_of_core_points},
                      {"is_at_rim", tree.is_at_rim}});
+    if (!tree.sample.empty())
+      trees.back()["sample"] = tree.sample;
   }
   return {{"core", to_json(result.core)},
           {"buffered", to_json(result.buffered)},
@@ -101,6 +107,14 @@ inline Tree_of_tile read_tree_of_tile(const Json_value& value)
   tree.diameter_at_breast_height = member(value, "diameter_at_breast_height").number();
   tree.number_of_core_points = read_count(member(value, "core_points"));
   tree.is_at_rim = read_flag(member(value, "is_at_rim"));
+  if (value.has("sample")) {
+    const Json_value sample = value["sample"];
+    if (!sample.json().is_array() || sample.size() > Index_sample::size)
+      sample.fail_expected("an array of at most " + std::to_string(Index_sample::size) +
+                           " indices");
+    for (std::size_t i = 0; i < sample.size(); ++i)
+      tree.sample.push_back(read_count(sample[i]));
+  }
   return tree;
 }
 

@@ -163,16 +163,35 @@ private:
       result.trees.push_back(tree);
     }
     const auto& is_core = table.property<std::uint8_t>("is_core");
+    const std::vector<std::uint64_t> index = indices_of(table);
+    std::vector<Index_sample> samples(result.trees.size());
     for (std::size_t i = 0; i < trees.size(); ++i) {
       if (trees[i] < 0)
         continue;
+      samples[static_cast<std::size_t>(trees[i])].add(index[i]);
       Tree_of_tile& tree = result.trees[static_cast<std::size_t>(trees[i])];
       tree.number_of_core_points += is_core[i] != 0;
       const Position_2 p = horizontal(table.points()[i], axis_up);
       tree.is_at_rim =
           tree.is_at_rim || m_manifest.is_at_rim(m_tile, p, rim * report.breast_height);
     }
+    for (std::size_t k = 0; k < result.trees.size(); ++k) {
+      Tree_of_tile& tree = result.trees[k];
+      const pcs::IO::Point_table::Point_3 foot(tree.foot[0], tree.foot[1], tree.foot[2]);
+      if (tree.is_foot_in_core &&
+          is_near_border(m_tile.core, horizontal(foot, axis_up), report.breast_height))
+        tree.sample = samples[k].indices();
+    }
     return result;
+  }
+
+  /// Returns whether a position is less than `width` away from a side of a box, or outside.
+  static bool is_near_border(const Box_2& box, const Position_2& p, double width)
+  {
+    for (std::size_t axis = 0; axis < 2; ++axis)
+      if (p[axis] < box.low[axis] + width || p[axis] > box.high[axis] - width)
+        return true;
+    return false;
   }
 
   std::string m_path;
