@@ -6,6 +6,7 @@
 #include "common/Report_file.h"
 #include "common/check_output.h"
 #include "common/run_program.h"
+#include "tiling/Labelled_blocks.h"
 #include "tiling/Labelled_tiles.h"
 #include "tiling/Ordered_points.h"
 #include "tiling/Plot_trees.h"
@@ -64,12 +65,15 @@ descending radius, so the numbers do not depend on the order in which tiles were
 Table: one row per tree (CSV): tree, x, y, z (of the foot), radius, diameter_at_breast_height,
 height, points, tile, parts (tiles whose cores have points of it), is_at_rim (it touches the outer
 rim of the buffer of its tile), cut_parts (other tiles where it does), file.
-Points: all points of the plot in the order of `index`, with the property `tree` (-1: none).
+Points: all points of the plot in the order of `index`, with the property `tree` (-1: none). If the
+tiles were thinned by --voxel, these are the points before thinning, and each has the tree of the
+kept point of its voxel. The table and the files of trees count and have the kept points.
 Folder: DIR/tree_000000.ply, ..., one file per tree with the foot as a comment, for
 extract_tree_skeleton.
 A missing or damaged result is named, and the other tiles are merged. The points of its core are
 taken from the tile, without a tree.
-Memory: the trees of all tiles, and some 500,000 points.
+Memory: the trees of all tiles, and some 500,000 points. With --points after --voxel, 12 bytes per
+kept point of the tiles that overlap one block.
 
 For example:
   tile_points --input plot_a.laz plot_b.laz --folder tiles
@@ -119,6 +123,8 @@ void check_files(const Options& options, const Tile_manifest& manifest)
 {
   Distinct_files distinct;
   distinct.add_input(options.tiles);
+  for (std::size_t b = 0; b < manifest.blocks().size(); ++b)
+    distinct.add_input(manifest.path_of_block(b));
   for (std::size_t t = 0; t < manifest.tiles().size(); ++t) {
     const std::string& name = manifest.tiles()[t].file;
     distinct.add_input(manifest.path_of(t));
@@ -138,7 +144,7 @@ void make_folder(const std::string& folder)
     throw pcs::IO_error(folder, "is not a directory and cannot be made one");
 }
 
-/// A tile whose result could not be used.
+/// A tile whose result, or a block whose points could not be used.
 struct Failure
 {
   std::string tile, reason;
@@ -163,12 +169,23 @@ struct Merged_plot
     tolerance = options.tolerance.value_or(tolerance_by_breast_height * breast_height);
     trees = std::make_unique<Plot_trees>(manifest, tiles.results(), tolerance);
     count_points(manifest);
+    if (!options.points.empty() && !manifest.blocks().empty())
+      blocks = std::make_unique<Labelled_blocks>(
+          manifest,
+          tiles,
+          *trees,
+          options.points,
+          [&](std::size_t b, const std::string& reason) {
+            failed_blocks.push_back({manifest.blocks()[b].file, reason});
+          });
   }
 
   std::vector<Failure> failures; ///< filled while the tiles are read
   Labelled_tiles tiles;
   double tolerance = 0; ///< of feet [L]
   std::unique_ptr<Plot_trees> trees;
+  std::unique_ptr<Labelled_blocks> blocks; ///< if all points of a thinned plot are wanted
+  std::vector<Failure> failed_blocks;
   std::vector<std::uint64_t> points; ///< of each tree
   std::vector<double> heights;       ///< of each tree [L]
   std::uint64_t number_of_points = 0, unassigned_points = 0, unmatched_points = 0;
@@ -220,6 +237,9 @@ all_warnings(const Tile_manifest& manifest, const Options& options, const Merged
     warnings.push_back("the plot is incomplete: tile_points left out the damaged scan " + scan);
   for (const Failure& failure : plot.failures)
     warnings.push_back(failure.tile + " has no result: " + failure.reason);
+  for (const Failure& failure : plot.failed_blocks)
+    warnings.push_back("the points of " + failure.tile + " are missing in " + options.points +
+                       ": " + failure.reason);
   const std::string tolerance = Ordered_json(plot.tolerance).dump();
   std::vector<std::string> items;
   for (const auto& [t, k] : plot.trees->unmatched())
@@ -319,9 +339,21 @@ Ordered_json to_json(const Tile_manifest& manifest, const Options& options, cons
           {"warnings", all_warnings(manifest, options, plot)}};
 }
 
-/// Writes the points of all cores in the order of their indices.
+/// Writes all points in the order of their indices.
 void write_points(const Tile_manifest& manifest, const Options& options, const Merged_plot& plot)
 {
+  const auto open_files = static_cast<std::size_t>(options.open_files);
+  if (plot.blocks) {
+    if (plot.blocks->sources().empty())
+      throw pcs::IO_error(options.tiles, "no block can be read; " + plot.failed_blocks[0].reason);
+    check_output(options.points, plot.blocks->schema());
+    Ordered_points::write(plot.blocks->sources(),
+                          plot.blocks->schema(),
+                          open_files,
+                          options.points);
+    return;
+  }
+  check_output(options.points, plot.tiles.schema());
   std::vector<Ordered_points::Source> sources;
   for (std::size_t t = 0; t < manifest.tiles().size(); ++t) {
     if (plot.tiles.source(t) == Labelled_tiles::Source::none)
@@ -333,10 +365,7 @@ void write_points(const Tile_manifest& manifest, const Options& options, const M
                              tree = plot.trees->trees_of_tile(t)[static_cast<std::size_t>(tree)];
                        }});
   }
-  Ordered_points::write(std::move(sources),
-                        plot.tiles.schema(),
-                        static_cast<std::size_t>(options.open_files),
-                        options.points);
+  Ordered_points::write(std::move(sources), plot.tiles.schema(), open_files, options.points);
 }
 
 void write_trees(const Options& options, const Merged_plot& plot)
@@ -365,19 +394,22 @@ bool run(const Options& options)
     make_folder(options.folder);
 
   const Merged_plot plot(manifest, options);
-  if (!options.points.empty()) {
-    check_output(options.points, plot.tiles.schema());
+  if (!options.points.empty())
     write_points(manifest, options, plot);
-  }
   if (!options.folder.empty())
     write_trees(options, plot);
   Ordered_json json = to_json(manifest, options, plot);
+  if (plot.blocks) {
+    json["all_points"] = plot.blocks->number_of_points();
+    json["all_unassigned_points"] = plot.blocks->number_of_unassigned_points();
+  }
   if (table)
     table->commit(table_of(manifest, options, plot));
   json["seconds"] = watch.lap();
   if (report)
     report->commit(json);
-  const std::size_t important = manifest.skipped().size() + plot.failures.size(); // the first ones
+  const std::size_t important = // the first ones
+      manifest.skipped().size() + plot.failures.size() + plot.failed_blocks.size();
   for (std::size_t w = 0; w < json["warnings"].size(); ++w)
     if (!options.is_quiet || w < important)
       std::cerr << "merge_tiles: warning: " << json["warnings"][w].get<std::string>() << '\n';
@@ -385,7 +417,7 @@ bool run(const Options& options)
     std::cout << "trees " << plot.points.size() << ", unassigned points " << plot.unassigned_points
               << " of " << plot.number_of_points << ", tiles " << plot.number_of_results << " of "
               << manifest.tiles().size() << ", seconds " << json["seconds"] << '\n';
-  return plot.number_of_results == manifest.tiles().size();
+  return plot.number_of_results == manifest.tiles().size() && plot.failed_blocks.empty();
 }
 
 } // namespace program

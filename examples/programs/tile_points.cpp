@@ -9,6 +9,7 @@
 #include "tiling/Point_files.h"
 #include "tiling/Tile_files.h"
 #include "tiling/Tile_tree.h"
+#include "tiling/Voxel_thinning.h"
 #include "tiling/horizontal.h"
 #include <pcs/IO/points/Point_table.h>
 #include <pcs/core/errors.h>
@@ -33,7 +34,7 @@
 
 namespace program {
 
-using Json = nlohmann::ordered_json;
+using Ordered_json = nlohmann::ordered_json;
 
 /// The smallest buffer that is derived from the heights [L].
 constexpr double least_buffer = 5;
@@ -54,7 +55,7 @@ struct Options
   std::vector<std::string> inputs;
   std::string folder, report, up = "z";
   std::int64_t tile_points = 5000000, open_files = 100;
-  std::optional<double> buffer;
+  std::optional<double> buffer, voxel;
   double cell = 1;
   bool do_skip_damaged = false, is_quiet = false;
 };
@@ -70,8 +71,14 @@ Manifest: DIR/tiles.json has the boxes and counts of the tiles. It is written la
 tiles are incomplete. A folder that has tiles already is refused.
 Buffer: by default a third of the height of the trees, but at least 5. The height is the difference
 of the highest and lowest points of a cell; 99 % of the points are in cells with at most this one.
+Thinning: with --voxel, a tile has one point per voxel: the one nearest to its center, on a grid
+that is aligned with the origin. DIR/block_0001.ply, ... have all points, and `kept_index`, the
+`index` of the point that is kept in their voxel. merge_tiles gives all points the tree of their
+kept point.
+--tile-points counts kept points. --cell is enlarged to a multiple of the voxel size.
 Memory: at most 1,048,576 cells (150 MB), a chunk of 262,144 points, and 0.5 MB per open file. If
-more cells have points, the cell size is doubled until they are fewer.
+more cells have points, the cell size is doubled until they are fewer. With --voxel, 120 bytes per
+kept point of a block, which has at most --tile-points points before thinning.
 Files are read twice, and once more for every further --open-files tiles.
 Damaged scans: by default they end the run, and no tile remains. With --skip-damaged, a scan that
 cannot be read to its end is named on stderr and in tiles.json, all its points are left out, and
@@ -99,6 +106,7 @@ void declare(CLI::App& app, Options& options)
   app.add_option("--buffer", options.buffer, "width around the core; default: by the heights");
   app.add_option("--cell", options.cell, "smallest side of a tile: tiles consist of such cells")
       ->capture_default_str();
+  app.add_option("--voxel", options.voxel, "voxel size for thinning; default: all points are kept");
   app.add_option("--up", options.up, "up direction: x, y, z, -x, -y or -z")
       ->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}))
       ->capture_default_str();
@@ -119,6 +127,9 @@ void check(const Options& options)
   if (!(options.cell >= 1 / largest && options.cell <= largest))
     throw pcs::Invalid_input("--cell is " + std::to_string(options.cell) +
                              ", expected a length between 1e-9 and 1e9");
+  if (options.voxel && !(*options.voxel >= options.cell / 1e6 && *options.voxel <= largest))
+    throw pcs::Invalid_input("--voxel is " + std::to_string(*options.voxel) +
+                             ", expected a length between a millionth of --cell and 1e9");
   std::set<std::string> paths;
   for (const std::string& input : options.inputs) {
     std::error_code error;
@@ -143,11 +154,13 @@ void make_folder(const std::string& folder)
     throw pcs::IO_error(folder, "cannot be listed: " + error.message());
   for (const fs::directory_entry& entry : entries) {
     const std::string name = entry.path().filename().string();
-    const bool is_tile = name.rfind("tile_", 0) == 0 && entry.path().extension() == ".ply";
+    const bool is_tile = (name.rfind("tile_", 0) == 0 || name.rfind("block_", 0) == 0) &&
+                         entry.path().extension() == ".ply";
     if (is_tile || name == "tiles.json")
       throw pcs::IO_error(folder,
                           "has a file of another run, " + name +
-                              "; remove tiles.json and tile_*.ply, or use another folder");
+                              "; remove tiles.json, tile_*.ply and block_*.ply, or use another "
+                              "folder");
   }
 }
 
@@ -159,6 +172,15 @@ struct Survey
   double lowest = 0, highest = 0; ///< heights [L]
   double height = 0;              ///< within cells [L]
 };
+
+/// Returns the grid of cells. With voxels, a cell consists of whole voxels.
+Count_grid make_grid(const Options& options)
+{
+  if (!options.voxel)
+    return Count_grid(options.cell, max_cells);
+  const double multiple = std::ceil(options.cell / *options.voxel * (1 - 1e-12)); // 1 / 0.1 is 10
+  return Count_grid(*options.voxel, max_cells, static_cast<std::int64_t>(std::max(1.0, multiple)));
+}
 
 /// Counts the points of all files. Returns whether none was left out.
 bool count(Point_files& files, std::size_t axis_up, Survey& result)
@@ -184,9 +206,9 @@ bool count(Point_files& files, std::size_t axis_up, Survey& result)
 
 Survey survey(Point_files& files, const Options& options, std::size_t axis_up)
 {
-  Survey result{Count_grid(options.cell, max_cells), {}};
+  Survey result{make_grid(options), {}};
   while (!count(files, axis_up, result))
-    result = {Count_grid(options.cell, max_cells), {}};
+    result = {make_grid(options), {}};
   if (files.number_of_points() == 0)
     throw pcs::Invalid_input("the inputs have no points");
   result.cells = result.grid.take();
@@ -206,28 +228,29 @@ std::string warning_of_large_tiles(const Tile_tree& tree, const Options& options
     }
   if (count == 0)
     return {};
-  Json size = cell;
+  Ordered_json size = cell;
   return std::to_string(count) + " tiles of a single cell of " + size.dump() +
          " have more points than --tile-points, up to " + std::to_string(most) +
-         (cell > options.cell ? "; the cell was enlarged because the plot is large"
-                              : "; reduce --cell, or thin the scan");
+         (cell > make_grid(options).cell_size()
+              ? "; the cell was enlarged because the plot is large"
+              : "; reduce --cell, or thin the scan by --voxel");
 }
 
-Json to_json(const Point_files& files)
+Ordered_json to_json(const Point_files& files)
 {
-  Json inputs = Json::array();
+  Ordered_json inputs = Ordered_json::array();
   for (const Point_files::File& file : files.files())
     inputs.push_back({{"file", file.path}, {"points", file.number_of_points}});
-  Json skipped = Json::array();
+  Ordered_json skipped = Ordered_json::array();
   for (const Point_files::Skipped& file : files.skipped())
     skipped.push_back({{"file", file.path}, {"reason", file.reason}});
   return {{"inputs", inputs}, {"skipped", skipped}, {"points", files.number_of_points()}};
 }
 
 /// `counts`: the number of points of each tile.
-Json to_json(const Tile_tree& tree, const std::vector<std::uint64_t>& counts)
+Ordered_json to_json(const Tile_tree& tree, const std::vector<std::uint64_t>& counts)
 {
-  Json tiles = Json::array();
+  Ordered_json tiles = Ordered_json::array();
   for (std::size_t t = 0; t < counts.size(); ++t) {
     const Tile& tile = tree.tiles()[t];
     tiles.push_back({{"file", Tile_files::name_of_file(t)},
@@ -247,8 +270,8 @@ all_warnings(const Point_files& files, const Tile_tree& tree, const Options& opt
   for (const Point_files::Skipped& file : files.skipped())
     warnings.push_back("a damaged scan is left out: " + file.reason);
   warnings.insert(warnings.end(), files.warnings().begin(), files.warnings().end());
-  for (const char* name : {"index", "is_core"})
-    if (files.shared().has(name))
+  for (const char* name : {"index", "is_core", "kept_index"})
+    if (files.shared().has(name) && (options.voxel || name != std::string("kept_index")))
       warnings.push_back("the property '" + std::string(name) + "' of the input is replaced");
   const std::string large = warning_of_large_tiles(tree, options, cell);
   if (!large.empty())
@@ -256,16 +279,27 @@ all_warnings(const Point_files& files, const Tile_tree& tree, const Options& opt
   return warnings;
 }
 
+/// Returns the blocks with all points.
+Ordered_json to_json(const Tile_tree& blocks)
+{
+  Ordered_json result = Ordered_json::array();
+  for (std::size_t b = 0; b < blocks.tiles().size(); ++b)
+    result.push_back({{"file", Voxel_thinning::name_of_file(b)},
+                      {"core", to_json(blocks.tiles()[b].core)},
+                      {"points", blocks.tiles()[b].number_of_core_points}});
+  return result;
+}
+
 /// Returns the manifest without the tiles.
-Json make_manifest(const Point_files& files,
-                   const Survey& found,
-                   const Options& options,
-                   std::size_t axis_up,
-                   double buffer)
+Ordered_json make_manifest(const Point_files& files,
+                           const Survey& found,
+                           const Options& options,
+                           std::size_t axis_up,
+                           double buffer)
 {
   std::vector<std::string> axes = {"x", "y", "z"};
   axes.erase(axes.begin() + static_cast<std::ptrdiff_t>(axis_up));
-  Json manifest = to_json(files);
+  Ordered_json manifest = to_json(files);
   manifest["up"] = options.up;
   manifest["axes"] = axes;
   manifest["heights"] = {found.lowest, found.highest};
@@ -289,6 +323,51 @@ Tile_tree make_tiles(Survey& found, const Options& options, double buffer)
   return tree;
 }
 
+/// The plot that is cut into tiles: all points of the inputs, or the kept points.
+struct Plot
+{
+  const Point_files* files = nullptr;
+  Survey found;
+  std::unique_ptr<Voxel_thinning> thinning = nullptr; ///< removes its files after `kept` is closed
+  std::unique_ptr<Point_files> kept = nullptr;
+  std::unique_ptr<Tile_tree> blocks = nullptr;
+};
+
+/// Counts the points, and thins them if this is wanted.
+Plot prepare(Point_files& files, const Options& options, std::size_t axis_up)
+{
+  Plot plot{&files, survey(files, options, axis_up)};
+  if (!options.voxel)
+    return plot;
+  plot.thinning = std::make_unique<Voxel_thinning>(options.folder,
+                                                   *options.voxel,
+                                                   files.shared(),
+                                                   files.number_of_points());
+  plot.blocks = std::make_unique<Tile_tree>(make_tiles(plot.found, options, 0));
+  const std::string kept = plot.thinning->thin(files,
+                                               *plot.blocks,
+                                               axis_up,
+                                               static_cast<std::size_t>(options.open_files));
+  plot.kept = std::make_unique<Point_files>(std::vector<std::string>{kept}, options.is_quiet);
+  plot.files = plot.kept.get();
+  plot.found = survey(*plot.kept, options, axis_up);
+  return plot;
+}
+
+/// Adds what belongs to thinning to the manifest.
+void add_thinning(const Plot& plot,
+                  const Point_files& files,
+                  const Options& options,
+                  Ordered_json& manifest)
+{
+  if (!plot.thinning)
+    return;
+  manifest["points"] = plot.files->number_of_points();
+  manifest["voxel"] = *options.voxel;
+  manifest["all_points"] = files.number_of_points();
+  manifest["blocks"] = to_json(*plot.blocks);
+}
+
 /// Returns the exit code.
 int run(const Options& options)
 {
@@ -310,40 +389,47 @@ int run(const Options& options)
   if (!options.report.empty())
     report_file = std::make_unique<Report_file>(options.report);
 
-  Survey found = survey(files, options, axis_up);
+  Plot plot = prepare(files, options, axis_up);
+  Survey& found = plot.found;
   const double buffer =
       options.buffer.value_or(std::max(least_buffer, buffer_per_height * found.height));
   const Tile_tree tree = make_tiles(found, options, buffer);
-  Tile_files tiles(options.folder, files.shared(), files.number_of_points());
+  Tile_files tiles(options.folder,
+                   plot.files->shared(),
+                   files.number_of_points(),
+                   plot.thinning != nullptr);
   for (std::size_t t = 0; t < tree.tiles().size(); ++t)
     distinct.add_output(tiles.path_of(t));
   tiles.check_space(tree.estimated_points());
   const double seconds_count = stage.lap();
 
   const std::vector<std::uint64_t> counts =
-      tiles.write(files, tree, axis_up, static_cast<std::size_t>(options.open_files));
+      tiles.write(*plot.files, tree, axis_up, static_cast<std::size_t>(options.open_files));
   const std::vector<std::string> warnings =
       all_warnings(files, tree, options, found.grid.cell_size());
-  Json manifest = make_manifest(files, found, options, axis_up, buffer);
+  Ordered_json manifest = make_manifest(files, found, options, axis_up, buffer);
+  add_thinning(plot, files, options, manifest);
   manifest["warnings"] = warnings;
   manifest["seconds"] = all.lap();
   manifest["tiles"] = to_json(tree, counts);
   if (report_file) {
-    Json report = manifest;
+    Ordered_json report = manifest;
     report["seconds_count"] = seconds_count;
     report["seconds_write"] = stage.lap();
     report_file->commit(report);
   }
   manifest_file.commit(manifest);
   tiles.keep();
+  if (plot.thinning)
+    plot.thinning->keep();
 
   const std::size_t number_of_skipped = files.skipped().size(); // the first warnings
   for (std::size_t w = 0; w < warnings.size(); ++w)
     if (!options.is_quiet || w < number_of_skipped)
       std::cerr << "tile_points: warning: " << warnings[w] << '\n';
   if (!options.is_quiet)
-    std::cout << "tiles " << tree.tiles().size() << ", points " << files.number_of_points()
-              << ", buffer " << buffer << ", seconds " << manifest["seconds"] << '\n';
+    std::cout << "tiles " << tree.tiles().size() << ", points " << manifest["points"] << ", buffer "
+              << buffer << ", seconds " << manifest["seconds"] << '\n';
   return number_of_skipped > 0 ? incomplete_plot : 0;
 }
 

@@ -105,6 +105,12 @@ run scan --cores 1 repeat_failures --config "$inputs" skip_damaged=true
 run scan --cores 1 --config "$inputs" skip_damaged=true
 same one scan
 
+# Thinned: all points have a tree, and the trees are the same.
+run thin --cores 2 --config voxel=0.03
+points=$(head -c 2000 one/merged/labelled.ply | grep -a "^element vertex")
+[[ $(head -c 2000 thin/merged/labelled.ply | grep -a "^element vertex") == "$points" ]] || fail "thinning loses points"
+[[ $(wc -l < thin/results/trees.csv) -eq $(wc -l < one/results/trees.csv) ]] || fail "thinning changes the trees"
+
 # All tiles are damaged: the message does not say that results are complete.
 expected=0
 run none --cores 1 tiles/tiles.json

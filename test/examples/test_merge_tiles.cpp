@@ -116,7 +116,7 @@ struct Merge_run : Program_run
     std::iota(order.begin(), order.end(), 0);
     for (std::size_t i = order.size(); i > 1; --i)
       std::swap(order[i - 1], order[engine() % i]);
-    const Table all = pcs::IO::read_points(path("tiles/" + name_of(tile)));
+    const Table all = pcs::IO::read_points(path(tile_folder + "/" + name_of(tile)));
     const auto& index = all.property<std::uint32_t>("index");
     const auto& is_core = all.property<std::uint8_t>("is_core");
     std::vector<std::size_t> rows;
@@ -188,6 +188,7 @@ struct Merge_run : Program_run
   std::vector<std::array<double, 3>> feet;
   std::map<std::size_t, std::array<double, 3>> first_foot_in; ///< foot of tree 0, by tile
   bool has_samples = false;
+  std::string tile_folder = "tiles";
   std::vector<std::int32_t> trees; ///< of the points of the plot
   Table plot;
   Json manifest;
@@ -436,6 +437,74 @@ BOOST_AUTO_TEST_CASE(overlaps_are_estimated_from_samples)
   BOOST_TEST(std::abs(overlap(all, sample(80000, 180000)) - 0.2) < 0.2);
   BOOST_TEST(overlap(sample(0, 10), sample(5, 15)) == 0.5);
   BOOST_TEST(overlap(all, sample(0, 0)) == 0);
+}
+
+BOOST_AUTO_TEST_CASE(all_points_have_the_tree_of_their_voxel)
+{
+  const auto cut = [this](const std::string& where, const std::string& options) {
+    program = PCS_TEST_PROGRAMS "/tile_points";
+    BOOST_TEST_REQUIRE(run("--input plot.ply --buffer 8 --voxel 2 --folder " + where + options) ==
+                           0,
+                       err);
+    program = PCS_TEST_PROGRAMS "/merge_tiles";
+    tile_folder = where;
+    manifest = Json::parse(content(where + "/tiles.json"));
+  };
+  cut("thin", " --tile-points 200");
+  BOOST_TEST_REQUIRE(manifest["points"].get<std::size_t>() < number_of_points / 2);
+  std::vector<std::int32_t> expected(number_of_points, -2);
+  std::vector<std::size_t> kept(number_of_trees, 0);
+  for (const Json& row : manifest["blocks"]) {
+    const Table block = pcs::IO::read_points(path("thin/" + row["file"].get<std::string>()));
+    const auto& index = block.property<std::uint32_t>("index");
+    for (std::size_t i = 0; i < index.size(); ++i) {
+      const std::uint32_t k = block.property<std::uint32_t>("kept_index")[i];
+      expected[index[i]] = trees[k];
+      if (k == index[i] && trees[k] >= 0)
+        ++kept[std::size_t(trees[k])];
+    }
+  }
+  write_results("results", 1);
+  const std::string options = "--results results --points out.ply --table t.csv --report r.json ";
+  BOOST_TEST_REQUIRE(run("--tiles thin/tiles.json " + options) == 0, err);
+  const Table points = pcs::IO::read_points(path("out.ply"));
+  BOOST_TEST((points.points() == plot.points()));
+  BOOST_TEST((points.property_values("intensity") == plot.property_values("intensity")));
+  BOOST_TEST((points.property<std::int32_t>("tree") == expected));
+  BOOST_TEST(!points.has_property("kept_index"));
+  report = Json::parse(content("r.json"));
+  BOOST_TEST(report["points"] == manifest["points"]);
+  BOOST_TEST(report["all_points"] == number_of_points);
+  BOOST_TEST(report["all_unassigned_points"] == std::count(expected.begin(), expected.end(), -1));
+  const auto rows = table("t.csv");
+  for (std::size_t t = 0; t < number_of_trees; ++t)
+    BOOST_TEST(rows[t + 1][7] == std::to_string(kept[t]));
+
+  // other tiles, and few open files: the same bytes
+  const std::string bytes = content("out.ply");
+  cut("other", " --tile-points 500");
+  write_results("others", 2);
+  BOOST_TEST_REQUIRE(run("--tiles other/tiles.json --results others --points out.ply "
+                         "--open-files 2") == 0,
+                     err);
+  BOOST_TEST((content("out.ply") == bytes));
+
+  // a damaged block is named, and the others remain
+  const std::string name = manifest["blocks"][1]["file"];
+  const std::string block = content("other/" + name);
+  write("other/" + name, block.substr(0, block.size() - 5));
+  BOOST_TEST(run("--tiles other/tiles.json --results others --points out.ply") == 1);
+  BOOST_TEST(err.find(name) != std::string::npos, err);
+  BOOST_TEST(pcs::IO::read_points(path("out.ply")).number_of_points() ==
+             number_of_points - manifest["blocks"][1]["points"].get<std::size_t>());
+  // blocks of another run
+  std::filesystem::copy_file(path("thin/" + name),
+                             path("other/" + name),
+                             std::filesystem::copy_options::overwrite_existing);
+  BOOST_TEST(run("--tiles other/tiles.json --results others --points out.ply") == 1);
+  BOOST_TEST(err.find(name) != std::string::npos, err);
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    BOOST_TEST(entry.path().filename().string().find("unfinished") == std::string::npos);
 }
 
 BOOST_AUTO_TEST_CASE(damaged_scans_that_were_left_out_are_named)

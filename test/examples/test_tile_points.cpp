@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -20,9 +21,11 @@
 #include <limits>
 #include <map>
 #include <random>
+#include <set>
 #include <string>
 #include <tiling/Count_grid.h>
 #include <tiling/Tile_tree.h>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -138,6 +141,62 @@ struct Tile_run : Program_run
   {
     return exists(tiles) && !std::filesystem::is_empty(folder / tiles);
   }
+};
+
+/// A plot in two files in which points lie on borders of voxels, have the same distance from the
+/// center of their voxel, or are the same.
+struct Voxel_run : Tile_run
+{
+  Voxel_run()
+  {
+    plot = make_plot(4000, 8);
+    std::vector<Table::Point_3>& points = plot.points();
+    for (std::size_t i = 0; i < 900; ++i) {
+      const Table::Point_3& p = points[i];
+      const double x = std::floor(p.x()), y = std::floor(p.y()), z = std::floor(p.z());
+      points[i + 1000] = {x + 0.125, y + 0.25, z + 0.25};
+      points[i + 2000] = {x + 0.375, y + 0.25, z + 0.25}; // as near
+      if (i % 2 == 0)
+        points[i + 3000] = points[i + 1000];
+    }
+    // equal points have equal properties, so the file does not matter
+    auto& intensity = plot.property<std::uint16_t>("intensity");
+    for (std::size_t i = 0; i < points.size(); ++i)
+      intensity[i] = std::uint16_t(std::int64_t(points[i].x() * 16) + int(points[i].z() * 256));
+    std::vector<std::size_t> first, last;
+    for (std::size_t i = 0; i < plot.number_of_points(); ++i)
+      (i < 1700 ? first : last).push_back(i);
+    pcs::IO::write_points(path("a.ply"), plot.select(first));
+    pcs::IO::write_points(path("b.ply"), plot.select(last));
+  }
+
+  /// Returns the kept point of each point. \pre `size` is a power of 2
+  static std::vector<std::size_t> kept_points(const Table& table, double size)
+  {
+    using Order = std::tuple<double, double, double, double, std::size_t>;
+    std::map<std::array<double, 3>, Order> best;
+    const auto voxel_of = [size](const Table::Point_3& p) {
+      return std::array<double, 3>{std::floor(p.x() / size),
+                                   std::floor(p.y() / size),
+                                   std::floor(p.z() / size)};
+    };
+    for (std::size_t i = 0; i < table.number_of_points(); ++i) {
+      const Table::Point_3& p = table.points()[i];
+      const auto v = voxel_of(p);
+      const Table::Point_3 center((v[0] + 0.5) * size, (v[1] + 0.5) * size, (v[2] + 0.5) * size);
+      const Order order(CGAL::squared_distance(p, center), p.x(), p.y(), p.z(), i);
+      const auto [at, is_new] = best.emplace(v, order);
+      if (!is_new)
+        at->second = std::min(at->second, order);
+    }
+    std::vector<std::size_t> kept;
+    for (const Table::Point_3& p : table.points())
+      kept.push_back(std::get<4>(best.at(voxel_of(p))));
+    return kept;
+  }
+
+  static constexpr double voxel = 0.5;
+  Table plot;
 };
 
 } // namespace
@@ -356,6 +415,102 @@ BOOST_AUTO_TEST_CASE(no_tile_remains_if_one_cannot_be_written)
   BOOST_TEST(err.find("tile_0002.ply") != std::string::npos, err);
   BOOST_TEST(exists("tiles"));
   BOOST_TEST(!has_tiles("tiles"));
+}
+
+BOOST_FIXTURE_TEST_CASE(one_point_per_voxel_is_kept, Voxel_run)
+{
+  const std::vector<std::size_t> expected = kept_points(plot, voxel);
+  const std::size_t number_of_kept = std::set<std::size_t>(expected.begin(), expected.end()).size();
+  BOOST_TEST_REQUIRE(number_of_kept < plot.number_of_points() * 3 / 4);
+  BOOST_TEST_REQUIRE(
+      run("--input a.ply b.ply --folder thin --tile-points 400 --buffer 2.3 --voxel 0.5") == 0,
+      err);
+  const Json m = manifest("thin");
+  BOOST_TEST(m["voxel"] == 0.5);
+  BOOST_TEST(m["points"] == number_of_kept);
+  BOOST_TEST(m["all_points"] == plot.number_of_points());
+  BOOST_TEST(m["tiles"].size() > 3u);
+  BOOST_TEST(m["blocks"].size() > m["tiles"].size());
+
+  std::vector<int> count(plot.number_of_points(), 0);
+  for (const Json& row : m["blocks"]) {
+    const Table block = pcs::IO::read_points(path("thin/" + row["file"].get<std::string>()));
+    const auto& index = block.property<std::uint32_t>("index");
+    const auto& kept = block.property<std::uint32_t>("kept_index");
+    BOOST_TEST(row["points"] == index.size());
+    BOOST_TEST(std::is_sorted(index.begin(), index.end()));
+    for (std::size_t i = 0; i < index.size(); ++i) {
+      ++count[index[i]];
+      BOOST_REQUIRE(kept[i] == expected[index[i]]);
+      BOOST_REQUIRE(block.points()[i] == plot.points()[index[i]]);
+      BOOST_REQUIRE(is_within(row["core"], block.points()[i], 0, 1, false));
+      BOOST_REQUIRE(block.property<double>("time")[i] == plot.property<double>("time")[index[i]]);
+    }
+  }
+  BOOST_TEST(std::count(count.begin(), count.end(), 1) == std::ptrdiff_t(count.size()));
+
+  for (const Json& row : m["tiles"]) { // each has all kept points of its box
+    const Table tile = pcs::IO::read_points(path("thin/" + row["file"].get<std::string>()));
+    BOOST_TEST(row["core_points"].get<std::size_t>() <= 400u);
+    std::vector<std::uint32_t> inside;
+    for (std::size_t i = 0; i < plot.number_of_points(); ++i)
+      if (expected[i] == i && is_within(row["buffered"], plot.points()[i], 0, 1, true))
+        inside.push_back(std::uint32_t(i));
+    BOOST_TEST((tile.property<std::uint32_t>("index") == inside), row["file"]);
+    check_properties(tile, plot, inside);
+  }
+  for (const auto& entry : std::filesystem::directory_iterator(path("thin")))
+    BOOST_TEST(entry.path().filename().string().find("unfinished") == std::string::npos);
+}
+
+BOOST_FIXTURE_TEST_CASE(kept_points_depend_neither_on_tiles_nor_on_the_order_of_files, Voxel_run)
+{
+  const auto kept = [this](const std::string& folder) {
+    std::set<std::pair<std::array<double, 3>, std::uint16_t>> result;
+    const Json m = manifest(folder);
+    for (const Json& row : m["tiles"]) {
+      const Table tile = pcs::IO::read_points(path(folder + "/" + row["file"].get<std::string>()));
+      const auto& is_core = tile.property<std::uint8_t>("is_core");
+      for (std::size_t i = 0; i < is_core.size(); ++i)
+        if (is_core[i] == 1) {
+          const auto& p = tile.points()[i];
+          result.insert({{p.x(), p.y(), p.z()}, tile.property<std::uint16_t>("intensity")[i]});
+        }
+    }
+    BOOST_TEST(result.size() == m["points"].get<std::size_t>());
+    return result;
+  };
+  // 0.3 does not divide the cell, and is not a binary fraction; of 0.5, points are equally near
+  for (const std::string size : {"0.3", "0.5"}) {
+    const auto cut =
+        [&](const std::string& files, const std::string& tiles, const std::string& to) {
+          BOOST_TEST_REQUIRE(run("--input " + files + " --folder " + to + size + " --voxel " +
+                                 size + " --buffer 1 --quiet --tile-points " + tiles) == 0,
+                             err);
+          return kept(to + size);
+        };
+    const auto first = cut("a.ply b.ply", "300", "one");
+    BOOST_TEST(first.size() < plot.number_of_points());
+    BOOST_TEST((first == cut("a.ply b.ply", "900 --open-files 1", "two")));
+    BOOST_TEST((first == cut("a.ply b.ply", "300 --cell 3", "three")));
+    BOOST_TEST((first == cut("b.ply a.ply", "300", "four")));
+    BOOST_TEST(manifest("one" + size)["tiles"].size() > manifest("two" + size)["tiles"].size());
+  }
+  BOOST_TEST(std::abs(manifest("one0.3")["cell"].get<double>() - 1.2) < 1e-12);
+}
+
+BOOST_FIXTURE_TEST_CASE(nothing_remains_of_thinning_that_fails, Voxel_run)
+{
+  write("limited.sh", "#!/bin/sh\nulimit -f 40\nexec '" + program + "' \"$@\"\n");
+  std::filesystem::permissions(folder / "limited.sh", std::filesystem::perms::owner_all);
+  program = path("limited.sh");
+  BOOST_TEST(run("--input a.ply b.ply --folder tiles --voxel 0.5 --tile-points 400") == 1);
+  BOOST_TEST(exists("tiles"));
+  BOOST_TEST(!has_tiles("tiles"));
+  for (const char* voxel : {"0", "-1", "nan", "inf", "1e-9"}) {
+    BOOST_TEST(run("--input a.ply --folder tiles --voxel " + std::string(voxel)) == 1);
+    BOOST_TEST(err.find("--voxel") != std::string::npos, err);
+  }
 }
 
 BOOST_AUTO_TEST_CASE(damaged_scans_are_left_out_if_wanted)

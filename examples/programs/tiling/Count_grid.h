@@ -36,6 +36,19 @@ struct Grid_cell
   Cell_points points;
 };
 
+/// Returns the index `i` with `i * size <= value < (i + 1) * size` in spite of rounding.
+/// \pre `|value| <= 1e15 * size`
+inline std::int64_t grid_index(double value, double size)
+{
+  const auto border = [size](std::int64_t i) { return static_cast<double>(i) * size; };
+  auto i = static_cast<std::int64_t>(std::floor(value / size));
+  while (border(i) > value)
+    --i;
+  while (border(i + 1) <= value)
+    ++i;
+  return i;
+}
+
 /*!
   The grid is aligned with the origin of the coordinates. If more than `max_cells` cells have
   points, the cell size is doubled until this is no longer the case. Hence the result does not
@@ -44,21 +57,22 @@ struct Grid_cell
 class Count_grid
 {
 public:
-  /// \pre `cell_size > 0`, `max_cells > 0`
-  Count_grid(double cell_size, std::size_t max_cells)
-    : m_cell_size(cell_size), m_largest_coordinate(1e15 * cell_size), m_max_cells(max_cells)
+  /// A cell consists of `multiple` units along each axis: values with the same `grid_index()` for
+  /// `unit` are in the same cell. \pre all are positive
+  Count_grid(double unit, std::size_t max_cells, std::int64_t multiple = 1)
+    : m_unit(unit), m_multiple(multiple), m_max_cells(max_cells)
   {
   }
 
-  double cell_size() const { return m_cell_size; }
+  double cell_size() const { return border(1); }
 
   /// Returns the largest absolute value of a coordinate. Beyond it, doubles have no digits left
   /// for the borders of the cells.
-  double largest_coordinate() const { return m_largest_coordinate; }
+  double largest_coordinate() const { return 1e15 * m_unit; }
 
   /// Returns the lower border of the cells with index `i`. Doubling the cell size does not change
-  /// the borders that remain, because multiplying by 2 is exact.
-  double border(std::int64_t i) const { return static_cast<double>(i) * m_cell_size; }
+  /// the borders that remain.
+  double border(std::int64_t i) const { return static_cast<double>(i * m_multiple) * m_unit; }
 
   /// \pre all values are at most `largest_coordinate()`
   void add(const Position_2& p, double height)
@@ -101,15 +115,16 @@ private:
   };
   using Cells = std::unordered_map<Cell_index, Cell_points, Hash>;
 
-  /// Returns the index `i` with `border(i) <= value < border(i + 1)`, in spite of rounding.
+  /// Returns the index `i` with `border(i) <= value < border(i + 1)`.
   std::int64_t index_of(double value) const
   {
-    auto i = static_cast<std::int64_t>(std::floor(value / m_cell_size));
-    while (border(i) > value)
-      --i;
-    while (border(i + 1) <= value)
-      ++i;
-    return i;
+    return divide(grid_index(value, m_unit), m_multiple);
+  }
+
+  /// Returns the quotient rounded down.
+  static std::int64_t divide(std::int64_t i, std::int64_t by)
+  {
+    return i / by - (i % by < 0 ? 1 : 0);
   }
 
   static void add_to(Cell_points& cell, const Cell_points& more)
@@ -122,19 +137,18 @@ private:
 
   void coarsen()
   {
-    const auto half = [](std::int64_t i) { return (i - (i < 0 ? 1 : 0)) / 2; }; // rounds down
     while (m_cells.size() > m_max_cells) {
       Cells coarse;
       for (const auto& [index, points] : m_cells)
-        add_to(coarse[{half(index[0]), half(index[1])}], points);
+        add_to(coarse[{divide(index[0], 2), divide(index[1], 2)}], points);
       m_cells = std::move(coarse);
-      m_cell_size *= 2;
+      m_multiple *= 2;
     }
     m_last = nullptr;
   }
 
-  double m_cell_size;
-  double m_largest_coordinate;
+  double m_unit;
+  std::int64_t m_multiple;
   std::size_t m_max_cells;
   Cells m_cells;
   Cell_points* m_last = nullptr; ///< the cell of the previous point, often the same

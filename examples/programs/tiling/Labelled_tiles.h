@@ -165,7 +165,7 @@ private:
       for (std::size_t i = 0; i < index.size(); ++i) {
         const auto& p = points.points()[i];
         const bool is_tree = trees[i] >= 0 && static_cast<std::size_t>(trees[i]) < parts.size();
-        if (index[i] < end || index[i] >= m_manifest.number_of_points() ||
+        if (index[i] < end || index[i] >= m_manifest.end_of_indices() ||
             !is_in_core(tile, horizontal(p, axis_up)) ||
             !(is_tree || trees[i] == Plot_trees::no_tree))
           throw pcs::IO_error(path,

@@ -30,20 +30,26 @@ namespace program {
 /*!
   Tiles have the shared properties of the inputs, and two more, which replace properties of the same
   name: `index`, the number of the point in all inputs from 0, and `is_core`, 1 in the core of the
-  tile and 0 in the buffer. Without `keep()`, the destructor removes the files.
+  tile and 0 in the buffer. Points that have an index already may keep it. Without `keep()`, the
+  destructor removes the files.
 */
 class Tile_files
 {
 public:
-  Tile_files(std::string folder, const pcs::IO::Point_schema& shared, std::uint64_t total)
+  /// `do_keep_index`: the points have indices below `total`, of the type of `type_of_index(total)`.
+  Tile_files(std::string folder,
+             const pcs::IO::Point_schema& shared,
+             std::uint64_t total,
+             bool do_keep_index = false)
     : m_folder(std::move(folder)),
-      m_has_short_index(total <= std::uint64_t(std::numeric_limits<std::uint32_t>::max()) + 1)
+      m_do_keep_index(do_keep_index),
+      m_has_short_index(type_of_index(total) == pcs::IO::Scalar_type::uint32)
   {
     using pcs::IO::Scalar_type;
     for (const pcs::IO::Property_description& p : shared.properties)
       if (p.name != "index" && p.name != "is_core")
         m_schema.push_back(p);
-    m_schema.push_back({"index", m_has_short_index ? Scalar_type::uint32 : Scalar_type::uint64});
+    m_schema.push_back({"index", type_of_index(total)});
     m_schema.push_back({"is_core", Scalar_type::uint8});
   }
   Tile_files(const Tile_files&) = delete;
@@ -55,12 +61,19 @@ public:
       std::filesystem::remove(path, error);
   }
 
+  /// Returns the type of the indices of `total` points.
+  static pcs::IO::Scalar_type type_of_index(std::uint64_t total)
+  {
+    const std::uint64_t most = std::uint64_t(std::numeric_limits<std::uint32_t>::max()) + 1;
+    return total <= most ? pcs::IO::Scalar_type::uint32 : pcs::IO::Scalar_type::uint64;
+  }
+
   /// Returns the name of the file of a tile in the folder; numbers begin with 1.
-  static std::string name_of_file(std::size_t tile)
+  static std::string name_of_file(std::size_t tile, const std::string& prefix = "tile_")
   {
     constexpr std::size_t width = 4;
     const std::string number = std::to_string(tile + 1);
-    return "tile_" + std::string(width - std::min(width, number.size()), '0') + number + ".ply";
+    return prefix + std::string(width - std::min(width, number.size()), '0') + number + ".ply";
   }
   std::string path_of(std::size_t tile) const
   {
@@ -160,14 +173,16 @@ private:
   {
     Table part = chunk.select(points);
     for (const std::string& name : part.property_names())
-      if (name == "index" || name == "is_core" || !has(name))
+      if ((name == "index" && !m_do_keep_index) || name == "is_core" || !has(name))
         part.remove_property(name);
     std::vector<std::uint8_t> is_core;
     is_core.reserve(points.size());
     for (const Table::Point_3& p : part.points())
       is_core.push_back(is_in_core(tile, horizontal(p, axis_up)) ? 1 : 0);
     const auto count = std::count(is_core.begin(), is_core.end(), std::uint8_t(1));
-    if (m_has_short_index)
+    if (m_do_keep_index)
+      ; // it is a property of the chunk
+    else if (m_has_short_index)
       part.add_property("index", indices<std::uint32_t>(points, index_of_chunk));
     else
       part.add_property("index", indices<std::uint64_t>(points, index_of_chunk));
@@ -194,7 +209,7 @@ private:
   }
 
   std::string m_folder;
-  bool m_has_short_index;
+  bool m_do_keep_index, m_has_short_index;
   std::vector<pcs::IO::Property_description> m_schema;
   std::vector<std::string> m_written; ///< files that are removed unless they are kept
 };

@@ -57,6 +57,14 @@ struct Listed_tile : Tile
   std::uint64_t number_of_points = 0; ///< with the buffer
 };
 
+/// A file of all points of a part of a plot that was thinned.
+struct Listed_block
+{
+  Box_2 core;                         ///< half-open
+  std::string file;                   ///< its name in the folder of the manifest
+  std::uint64_t number_of_points = 0; ///< before thinning
+};
+
 /// The tiles of a plot, as tile_points lists them in tiles.json.
 class Tile_manifest
 {
@@ -74,6 +82,9 @@ public:
     read_up(top["up"]);
     if (top.has("skipped"))
       read_skipped(top["skipped"]);
+    m_end_of_indices = m_number_of_points;
+    if (top.has("blocks"))
+      read_blocks(top);
     const Json_value tiles = top["tiles"];
     if (!tiles.json().is_array() || tiles.size() == 0)
       tiles.fail_expected("an array of tiles");
@@ -98,6 +109,14 @@ public:
 
   const std::vector<Listed_tile>& tiles() const { return m_tiles; }
   std::uint64_t number_of_points() const { return m_number_of_points; } ///< of all cores
+  /// Returns the number of points before thinning: all indices are smaller.
+  std::uint64_t end_of_indices() const { return m_end_of_indices; }
+  /// Returns the files of all points, in no particular order; empty if the plot was not thinned.
+  const std::vector<Listed_block>& blocks() const { return m_blocks; }
+  std::string path_of_block(std::size_t block) const
+  {
+    return (m_folder / m_blocks[block].file).string();
+  }
   /// Returns the damaged scans whose points are missing in the tiles.
   const std::vector<std::string>& skipped() const { return m_skipped; }
   const std::string& up() const { return m_up; }
@@ -180,6 +199,41 @@ private:
     }
   }
 
+  void read_blocks(const Json_value& top)
+  {
+    if (!top.has("all_points"))
+      top.fail_expected("a manifest with the keys blocks and all_points");
+    m_end_of_indices = read_count(top["all_points"]);
+    const Json_value blocks = top["blocks"];
+    if (!blocks.json().is_array())
+      blocks.fail_expected("an array of blocks");
+    std::uint64_t count = 0;
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+      const Json_value value = blocks[b];
+      value.object({"file", "core", "points"});
+      for (const char* key : {"file", "core", "points"})
+        if (!value.has(key))
+          value.fail_expected("a block with " + std::string(key));
+      m_blocks.push_back(
+          {read_box(value["core"]), read_file_name(value["file"]), read_count(value["points"])});
+      count += m_blocks.back().number_of_points;
+    }
+    if (count != m_end_of_indices)
+      top.fail("the blocks have " + std::to_string(count) + " points, but `all_points` is " +
+               std::to_string(m_end_of_indices));
+  }
+
+  static std::string read_file_name(const Json_value& value)
+  {
+    std::string file;
+    if (value.json().is_string())
+      file = value.json().get<std::string>();
+    const std::filesystem::path name(file);
+    if (name.extension() != ".ply" || name.filename() != name)
+      value.fail_expected("the name of a PLY file in the folder of the manifest");
+    return file;
+  }
+
   static Listed_tile read_tile(const Json_value& value)
   {
     value.object({"file", "core", "buffered", "points", "core_points"});
@@ -187,11 +241,7 @@ private:
       if (!value.has(key))
         value.fail_expected("a tile with " + std::string(key));
     Listed_tile tile;
-    if (value["file"].json().is_string())
-      tile.file = value["file"].json().get<std::string>();
-    const std::filesystem::path name(tile.file);
-    if (name.extension() != ".ply" || name.filename() != name)
-      value["file"].fail_expected("the name of a PLY file in the folder of the manifest");
+    tile.file = read_file_name(value["file"]);
     tile.core = read_box(value["core"]);
     tile.buffered = read_box(value["buffered"]);
     tile.number_of_points = read_count(value["points"]);
@@ -200,7 +250,8 @@ private:
   }
 
   std::filesystem::path m_folder;
-  std::uint64_t m_number_of_points = 0;
+  std::uint64_t m_number_of_points = 0, m_end_of_indices = 0;
+  std::vector<Listed_block> m_blocks;
   std::vector<std::string> m_skipped;
   std::string m_up;
   std::vector<Listed_tile> m_tiles;

@@ -141,13 +141,14 @@ inline Tile_result read_tile_result(const std::string& path)
   return result;
 }
 
-/// Returns the property `index` of points of a tile. Throws `pcs::Invalid_input` if it is missing,
-/// or not of type `uint32` or `uint64`.
-inline std::vector<std::uint64_t> indices_of(const pcs::IO::Point_table& table)
+/// Returns a property with indices of points. Throws `pcs::Invalid_input` if it is missing, or not
+/// of type `uint32` or `uint64`.
+inline std::vector<std::uint64_t> indices_of(const pcs::IO::Point_table& table,
+                                             const std::string& name = "index")
 {
-  if (table.has_property("index") && table.property_type("index") == pcs::IO::Scalar_type::uint64)
-    return table.property<std::uint64_t>("index");
-  const std::vector<std::uint32_t>& index = table.property<std::uint32_t>("index");
+  if (table.has_property(name) && table.property_type(name) == pcs::IO::Scalar_type::uint64)
+    return table.property<std::uint64_t>(name);
+  const std::vector<std::uint32_t>& index = table.property<std::uint32_t>(name);
   return {index.begin(), index.end()};
 }
 
