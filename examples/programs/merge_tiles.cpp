@@ -6,6 +6,7 @@
 #include "common/Report_file.h"
 #include "common/check_output.h"
 #include "common/run_program.h"
+#include "crowns/Plot_crowns.h"
 #include "tiling/Labelled_blocks.h"
 #include "tiling/Labelled_tiles.h"
 #include "tiling/Ordered_points.h"
@@ -45,8 +46,8 @@ constexpr double tolerance_by_breast_height = 0.25;
 
 struct Options
 {
-  std::string tiles, results, table, points, folder, report;
-  std::optional<double> tolerance;
+  std::string tiles, results, table, points, folder, crowns, report;
+  std::optional<double> tolerance, crown_base;
   std::size_t min_points = 1000;
   std::int64_t open_files = 100;
   bool is_quiet = false;
@@ -64,7 +65,11 @@ share more than half of their points (by samples of segment_trees). Trees are nu
 descending radius, so the numbers do not depend on the order in which tiles were segmented.
 Table: one row per tree (CSV): tree, x, y, z (of the foot), radius, diameter_at_breast_height,
 height, points, tile, parts (tiles whose cores have points of it), is_at_rim (it touches the outer
-rim of the buffer of its tile), cut_parts (other tiles where it does), file.
+rim of the buffer of its tile), cut_parts (other tiles where it does), file, crown_area (of the
+convex hull, in the plan, of the points at least --crown-base above the foot), crown_volume (sum of
+the areas of the convex hulls of layers of 0.5, times 0.5).
+Crowns: the convex hulls in the plan (GeoJSON polygons in the coordinates of the scan). There are no
+standard errors of crowns: how far single points lie outside a crown is not known.
 Points: all points of the plot in the order of `index`, with the property `tree` (-1: none). If the
 tiles were thinned by --voxel, these are the points before thinning, and each has the tree of the
 kept point of its voxel. The table and the files of trees count and have the kept points.
@@ -72,8 +77,8 @@ Folder: DIR/tree_000000.ply, ..., one file per tree with the foot as a comment, 
 extract_tree_skeleton.
 A missing or damaged result is named, and the other tiles are merged. The points of its core are
 taken from the tile, without a tree.
-Memory: the trees of all tiles, and some 500,000 points. With --points after --voxel, 12 bytes per
-kept point of the tiles that overlap one block.
+Memory: the trees of all tiles, and some 500,000 points; 60 MB for crowns. With --points after
+--voxel, 12 bytes per kept point of the tiles that overlap one block.
 
 For example:
   tile_points --input plot_a.laz plot_b.laz --folder tiles
@@ -93,6 +98,10 @@ void declare(CLI::App& app, Options& options)
   app.add_option("--table", options.table, "the trees of the plot (CSV)");
   app.add_option("--points", options.points, "all points with their tree");
   app.add_option("--folder", options.folder, "folder for one file per tree");
+  app.add_option("--crowns", options.crowns, "outlines of the crowns (GeoJSON)");
+  app.add_option("--crown-base",
+                 options.crown_base,
+                 "height above the foot where crowns begin; default: breast height");
   app.add_option("--report", options.report, "counts, missing tiles, unmatched trees (JSON)");
   app.add_option("--tolerance",
                  options.tolerance,
@@ -109,8 +118,12 @@ void declare(CLI::App& app, Options& options)
 void check(const Options& options)
 {
   if (options.table.empty() && options.points.empty() && options.folder.empty() &&
-      options.report.empty())
-    throw pcs::Invalid_input("one of --table, --points, --folder and --report is required");
+      options.crowns.empty() && options.report.empty())
+    throw pcs::Invalid_input("one of --table, --points, --folder, --crowns and --report is "
+                             "required");
+  if (options.crown_base && !(*options.crown_base >= 0 && std::isfinite(*options.crown_base)))
+    throw pcs::Invalid_input("--crown-base is " + std::to_string(*options.crown_base) +
+                             ", expected a length of 0 or more");
   if (options.tolerance && !(*options.tolerance >= 0 && std::isfinite(*options.tolerance)))
     throw pcs::Invalid_input("--tolerance is " + std::to_string(*options.tolerance) +
                              ", expected a length of 0 or more");
@@ -133,6 +146,7 @@ void check_files(const Options& options, const Tile_manifest& manifest)
   }
   distinct.add_output(options.table);
   distinct.add_output(options.points);
+  distinct.add_output(options.crowns);
   distinct.add_output(options.report);
 }
 
@@ -169,6 +183,9 @@ struct Merged_plot
     tolerance = options.tolerance.value_or(tolerance_by_breast_height * breast_height);
     trees = std::make_unique<Plot_trees>(manifest, tiles.results(), tolerance);
     count_points(manifest);
+    if (!options.table.empty() || !options.crowns.empty())
+      crowns = Plot_crowns(manifest, tiles, *trees, options.crown_base.value_or(breast_height))
+                   .measures();
     if (!options.points.empty() && !manifest.blocks().empty())
       blocks = std::make_unique<Labelled_blocks>(
           manifest,
@@ -186,8 +203,9 @@ struct Merged_plot
   std::unique_ptr<Plot_trees> trees;
   std::unique_ptr<Labelled_blocks> blocks; ///< if all points of a thinned plot are wanted
   std::vector<Failure> failed_blocks;
-  std::vector<std::uint64_t> points; ///< of each tree
-  std::vector<double> heights;       ///< of each tree [L]
+  std::vector<pcs::crowns::Crown_measures> crowns; ///< of each tree, if they are wanted
+  std::vector<std::uint64_t> points;               ///< of each tree
+  std::vector<double> heights;                     ///< of each tree [L]
   std::uint64_t number_of_points = 0, unassigned_points = 0, unmatched_points = 0;
   std::size_t number_of_results = 0; ///< tiles with a result
 
@@ -294,7 +312,7 @@ bool has_file(const Options& options, std::uint64_t number_of_points)
 std::string table_of(const Tile_manifest& manifest, const Options& options, const Merged_plot& plot)
 {
   std::string text = "tree,x,y,z,radius,diameter_at_breast_height,height,points,tile,parts,"
-                     "is_at_rim,cut_parts,file\n";
+                     "is_at_rim,cut_parts,file,crown_area,crown_volume\n";
   for (std::size_t p = 0; p < plot.points.size(); ++p) {
     const Plot_tree& tree = plot.trees->trees()[p];
     text += std::to_string(p);
@@ -304,7 +322,8 @@ std::string table_of(const Tile_manifest& manifest, const Options& options, cons
             number(plot.heights[p]) + "," + std::to_string(plot.points[p]) + "," +
             manifest.tiles()[tree.tile].file + "," + std::to_string(tree.number_of_parts) + "," +
             (tree.is_at_rim ? "1" : "0") + "," + std::to_string(tree.number_of_cut_parts) + "," +
-            (has_file(options, plot.points[p]) ? Tree_files::name_of(p) : "") + "\n";
+            (has_file(options, plot.points[p]) ? Tree_files::name_of(p) : "") + "," +
+            number(plot.crowns[p].area) + "," + number(plot.crowns[p].volume) + "\n";
   }
   return text;
 }
@@ -385,9 +404,11 @@ bool run(const Options& options)
   pcs::internal::Stopwatch watch;
   const Tile_manifest manifest(options.tiles);
   check_files(options, manifest);
-  std::unique_ptr<Report_file> table, report;
+  std::unique_ptr<Report_file> table, crowns, report;
   if (!options.table.empty())
     table = std::make_unique<Report_file>(options.table);
+  if (!options.crowns.empty())
+    crowns = std::make_unique<Report_file>(options.crowns);
   if (!options.report.empty())
     report = std::make_unique<Report_file>(options.report);
   if (!options.folder.empty())
@@ -405,6 +426,8 @@ bool run(const Options& options)
   }
   if (table)
     table->commit(table_of(manifest, options, plot));
+  if (crowns)
+    crowns->commit(to_json(plot.crowns));
   json["seconds"] = watch.lap();
   if (report)
     report->commit(json);

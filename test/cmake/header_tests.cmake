@@ -82,7 +82,7 @@ function(pcs_add_header_chains name regex)
   target_link_libraries(${name} PRIVATE pcs::pcs pcs_syntax_flags pcs_dev_flags)
   set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
 endfunction()
-pcs_add_header_chains(headers_of_users "^pcs/((IO|core|generators|splats)/)?[^/]*$")
+pcs_add_header_chains(headers_of_users "^pcs/((IO|core|generators|splats|crowns)/)?[^/]*$")
 pcs_add_header_chains(headers_of_stages ".")
 pcs_add_build_test(headers.self_contained headers_of_users long)
 

@@ -36,7 +36,7 @@ run() {
 # same A B: all results of two folders are equal
 same() {
   local file
-  for file in results/{trees.csv,trees.geojson,map.svg,failures.csv} merged/{trees.csv,labelled.ply}; do
+  for file in results/{trees.csv,{trees,crowns}.geojson,map.svg,failures.csv} merged/{trees.csv,labelled.ply}; do
     cmp "$1/$file" "$2/$file" || fail "$1 and $2 differ"
   done
 }
@@ -68,6 +68,9 @@ for corner in 500000,5400000 500009,5400000 500000,5400009 500009,5400009; do
      END { exit !n }' one/results/trees.csv || fail "there is no tree at $corner"
 done
 grep -q "EPSG::25832" one/results/trees.geojson || fail "the coordinate system is lost"
+awk -F, 'NR > 1 && $5 > 0 && !($11 > 1 && $12 > 1 && $12 < $11 * $7) { n++ } END { exit n > 0 }' \
+  one/results/trees.csv || fail "a crown is missing, or larger than its area times the height of the tree"
+[[ $(grep -c "<polygon" one/results/map.svg) -eq $(($(wc -l < one/results/trees.csv) - 1)) ]] || fail "the map has no crowns"
 [[ $(wc -l < one/results/failures.csv) -eq 1 ]] || fail "there are failures"
 
 # A damaged tile: it is named, the rest is complete, and the exit code is 1.

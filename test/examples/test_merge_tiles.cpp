@@ -6,6 +6,7 @@
 #include <pcs/IO/points/Point_table.h>
 #include <pcs/IO/read_points.h>
 #include <pcs/IO/write_points.h>
+#include <pcs/crowns/measure_crown.h>
 
 #include <boost/test/unit_test.hpp>
 
@@ -202,8 +203,11 @@ BOOST_AUTO_TEST_CASE(points_table_and_files_have_the_trees_of_the_plot)
 {
   write_results("results", 1);
   BOOST_TEST_REQUIRE(run("--tiles tiles/tiles.json --results results --table trees.csv "
-                         "--points out.ply --folder trees --min-points 300 --report r.json") == 0,
+                         "--points out.ply --folder trees --min-points 300 --report r.json "
+                         "--crowns crowns.json") == 0,
                      err);
+  const Json crowns = Json::parse(content("crowns.json"));
+  BOOST_TEST_REQUIRE(crowns["features"].size() == number_of_trees);
   const Table points = pcs::IO::read_points(path("out.ply"));
   BOOST_TEST((points.points() == plot.points()));
   BOOST_TEST((points.property_values("intensity") == plot.property_values("intensity")));
@@ -243,6 +247,17 @@ BOOST_AUTO_TEST_CASE(points_table_and_files_have_the_trees_of_the_plot)
     BOOST_TEST(row[11] == std::to_string(t == 7 ? parts - has_part[owner_of(t)] : 0));
     const std::string name =
         "tree_0000" + std::string(t < 10 ? "0" : "") + std::to_string(t) + ".ply";
+    std::vector<Table::Point_3> of_tree;
+    for (const std::size_t i : own)
+      of_tree.push_back(plot.points()[i]);
+    const auto crown = pcs::crowns::measure_crown(of_tree, feet[t][2] + 1.3); // breast height
+    BOOST_TEST(crown.area > 0);
+    BOOST_TEST(std::stod(row[13]) == crown.area);
+    BOOST_TEST(std::stod(row[14]) == crown.volume);
+    const Json& outline = crowns["features"][t]["geometry"]["coordinates"][0];
+    BOOST_TEST_REQUIRE(outline.size() == crown.outline.size() + 1);
+    for (std::size_t i = 0; i < outline.size(); ++i)
+      BOOST_TEST((outline[i] == Json(crown.outline[i % crown.outline.size()])));
     BOOST_TEST(exists("trees/" + name) == (own.size() >= 300));
     BOOST_TEST(row[12] == (own.size() >= 300 ? name : ""));
     if (own.size() < 300)
@@ -507,6 +522,20 @@ BOOST_AUTO_TEST_CASE(all_points_have_the_tree_of_their_voxel)
     BOOST_TEST(entry.path().filename().string().find("unfinished") == std::string::npos);
 }
 
+BOOST_AUTO_TEST_CASE(crowns_begin_at_the_given_height)
+{
+  write_results("results", 1);
+  BOOST_TEST_REQUIRE(
+      run("--tiles tiles/tiles.json --results results --table t.csv --crown-base 6") == 0,
+      err);
+  const auto rows = table("t.csv");
+  std::vector<Table::Point_3> of_tree;
+  for (std::size_t i = 0; i < trees.size(); ++i)
+    if (trees[i] == 3)
+      of_tree.push_back(plot.points()[i]);
+  BOOST_TEST(std::stod(rows[4][14]) == pcs::crowns::measure_crown(of_tree, feet[3][2] + 6).volume);
+}
+
 BOOST_AUTO_TEST_CASE(damaged_scans_that_were_left_out_are_named)
 {
   write_results("results", 1);
@@ -556,6 +585,9 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused)
   refuses("--tiles tiles/tiles.json --results empty --table t.csv", "no result");
   refuses(inputs + "--table t.csv --tolerance nan", "--tolerance");
   refuses(inputs + "--table t.csv --tolerance -1", "--tolerance");
+  refuses(inputs + "--table t.csv --crown-base -1", "--crown-base");
+  refuses(inputs + "--table t.csv --crown-base nan", "--crown-base");
+  refuses(inputs + "--table t.csv --crowns t.csv", "same file");
   refuses(inputs + "--table t.csv --open-files 1", "--open-files");
   refuses(inputs + "--table t.csv --folder file", "directory");
   refuses(inputs + "--table tiles/tiles.json", "same file");

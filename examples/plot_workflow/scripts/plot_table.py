@@ -17,7 +17,7 @@ from run_step import write  # noqa: E402
 
 COLUMNS = (
     "tree x y foot_height dbh dbh_error height height_error wood_volume wood_volume_error"
-    " scan_dbh scan_height points tile state warnings"
+    " crown_area crown_volume scan_dbh scan_height points tile state warnings"
 ).split()
 
 
@@ -40,6 +40,8 @@ def row_of(tree, reports, errors, close, lost, skipped):
         foot_height=rounded(tree["z"], 3),
         scan_dbh=rounded(tree["diameter_at_breast_height"], 4) or None,  # 0: not measured
         scan_height=rounded(tree["height"], 3),
+        crown_area=rounded(tree["crown_area"], 3),
+        crown_volume=rounded(tree["crown_volume"], 3),
         points=int(tree["points"]),
         tile=tree["tile"],
     )
@@ -85,12 +87,17 @@ def csv_text(columns, rows):
     return text.getvalue()
 
 
-def geojson_text(rows, failures, warnings, epsg):
-    """Coordinates are those of the scan; `crs` is read by GDAL and QGIS."""
+def collection(epsg):
+    """An empty GeoJSON file. Coordinates are those of the scan; GDAL and QGIS read `crs`."""
     plot = {"type": "FeatureCollection"}
     if epsg:
         name = f"urn:ogc:def:crs:EPSG::{epsg}"
         plot["crs"] = {"type": "name", "properties": {"name": name}}
+    return plot
+
+
+def geojson_text(rows, failures, warnings, epsg):
+    plot = collection(epsg)
     plot["failures"] = failures
     plot["warnings"] = warnings
     plot["features"] = [
@@ -105,8 +112,15 @@ def geojson_text(rows, failures, warnings, epsg):
     return json.dumps(plot, indent=1, ensure_ascii=False) + "\n"
 
 
-def map_text(rows, tiles, failed):
-    """Stems to scale, with their numbers; cores of tiles; red: no skeleton or no result."""
+def crowns_text(crowns, epsg):
+    """The outlines of the crowns as polygons."""
+    plot = collection(epsg)
+    plot["features"] = crowns
+    return json.dumps(plot, indent=1) + "\n"
+
+
+def map_text(rows, tiles, failed, crowns):
+    """Stems to scale with their numbers, crowns, cores of tiles; red: no skeleton or no result."""
     low = [min(t["core"]["low"][k] for t in tiles) for k in (0, 1)]
     high = [max(t["core"]["high"][k] for t in tiles) for k in (0, 1)]
     size = [high[k] - low[k] for k in (0, 1)]
@@ -139,6 +153,16 @@ def map_text(rows, tiles, failed):
             f' fill="{"mistyrose" if is_failed else "none"}" stroke="silver" stroke-width="0.15">'
             f"<title>{escape(name)}{': failed' if is_failed else ''}</title></rect>"
         )
+    for crown in crowns:
+        if crown["geometry"]:
+            corners = " ".join(
+                f"{x_of(x)},{y_of(y)}" for x, y in crown["geometry"]["coordinates"][0][:-1]
+            )
+            label = "crown of tree {tree}: {crown_area:.1f} m²".format(**crown["properties"])
+            lines.append(
+                f'<polygon points="{corners}" fill="forestgreen" fill-opacity="0.15"'
+                f' stroke="forestgreen" stroke-width="0.15"><title>{label}</title></polygon>'
+            )
     for row in rows:
         diameter = row["dbh"] or row["scan_dbh"]
         colour = "saddlebrown" if row["state"] == "complete" else "red"
@@ -169,6 +193,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--tiles", required=True, help="manifest of the tiles")
     parser.add_argument("--trees", required=True, help="table of merge_tiles")
+    parser.add_argument("--crowns", required=True, help="outlines of merge_tiles; may be missing")
     parser.add_argument("--status", required=True, help="folder of the status files")
     parser.add_argument("--groups", required=True, type=int, help="number of groups of trees")
     parser.add_argument("--folder", required=True, help="folder of the results")
@@ -204,10 +229,14 @@ def main():
             for tree in csv.DictReader(file)
         ]
 
+    crowns = []
+    if os.path.exists(arguments.crowns):  # not if the tiles could not be merged
+        crowns = read_json(arguments.crowns)["features"]
     texts = {
         "trees.csv": csv_text(COLUMNS, rows),
         "trees.geojson": geojson_text(rows, failures, merged["warnings"], arguments.epsg),
-        "map.svg": map_text(rows, tiles, failed_tiles),
+        "crowns.geojson": crowns_text(crowns, arguments.epsg),
+        "map.svg": map_text(rows, tiles, failed_tiles, crowns),
         "failures.csv": csv_text(["step", "name", "message"], failures),
     }
     for name, text in texts.items():

@@ -22,7 +22,8 @@ import sys
 import time
 
 TREE_COLUMNS = (
-    "tree,x,y,z,radius,diameter_at_breast_height,height,points,tile,parts,is_at_rim,cut_parts,file"
+    "tree,x,y,z,radius,diameter_at_breast_height,height,points,tile,parts,is_at_rim,cut_parts,file,"
+    "crown_area,crown_volume"
 )
 BAD_INPUT = 1  # exit code of the programs: another attempt has the same result
 INCOMPLETE = 3  # exit code of tile_points: damaged scans are left out and listed in tiles.json
@@ -174,6 +175,7 @@ def merge(arguments, runner):
         "--table": "trees.csv",
         "--points": arguments.labels,
         "--folder": "trees",
+        "--crowns": "crowns.geojson",
         "--report": "merge.json",
     }
     outputs = [word for key in paths for word in (key, os.path.join(new, paths[key]))]

@@ -1,0 +1,138 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Measures the crowns of all trees of a plot with bounded memory.
+
+#ifndef PCS_EXAMPLES_PROGRAMS_CROWNS_PLOT_CROWNS_H
+#define PCS_EXAMPLES_PROGRAMS_CROWNS_PLOT_CROWNS_H
+
+#include "tiling/Labelled_tiles.h"
+#include "tiling/Plot_trees.h"
+#include "tiling/Tile_manifest.h"
+#include "tiling/horizontal.h"
+#include <pcs/IO/Point_reader.h>
+#include <pcs/IO/points/Point_table.h>
+#include <pcs/crowns/Crown_layers.h>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace program {
+
+/*!
+  The crown of a tree consists of its points at or above a height above the foot. Trees are measured
+  in groups in the order of their tiles, and only the tiles with points of a group are read for it.
+*/
+class Plot_crowns
+{
+public:
+  /// Trees that are measured at a time; a tree needs some 60 kB.
+  static constexpr std::size_t group_size = 1000;
+
+  /// `base`: height above the foot [L].
+  Plot_crowns(const Tile_manifest& manifest,
+              const Labelled_tiles& tiles,
+              const Plot_trees& trees,
+              double base)
+    : m_manifest(manifest),
+      m_tiles(tiles),
+      m_trees(trees),
+      m_sign(manifest.up().front() == '-' ? -1 : 1),
+      m_base(base),
+      m_measures(trees.trees().size())
+  {
+    std::vector<std::size_t> order(m_measures.size());
+    for (std::size_t p = 0; p < order.size(); ++p)
+      order[p] = p;
+    std::stable_sort(order.begin(), order.end(), [&trees](std::size_t a, std::size_t b) {
+      return trees.trees()[a].tile < trees.trees()[b].tile;
+    });
+    for (std::size_t first = 0; first < order.size(); first += group_size)
+      measure(order, first, std::min(order.size(), first + group_size));
+  }
+
+  /// Returns the crowns of the trees of the plot.
+  const std::vector<pcs::crowns::Crown_measures>& measures() const { return m_measures; }
+
+private:
+  void measure(const std::vector<std::size_t>& order, std::size_t first, std::size_t end)
+  {
+    std::vector<pcs::crowns::Crown_layers> layers;
+    std::vector<std::size_t> place(m_measures.size(), end); // of each tree in `order`
+    for (std::size_t w = first; w < end; ++w) {
+      place[order[w]] = w;
+      layers.emplace_back(m_sign * m_trees.trees()[order[w]].foot[m_manifest.axis_up()] + m_base);
+    }
+    for (std::size_t t = 0; t < m_tiles.results().size(); ++t) {
+      const std::vector<std::int32_t>& tree_of = m_trees.trees_of_tile(t);
+      std::vector<std::size_t> place_of(tree_of.size(), end);
+      bool is_needed = false;
+      for (std::size_t k = 0; k < tree_of.size(); ++k)
+        if (tree_of[k] != Plot_trees::no_tree && m_tiles.parts(t)[k].number_of_points > 0) {
+          place_of[k] = place[static_cast<std::size_t>(tree_of[k])];
+          is_needed = is_needed || place_of[k] < end;
+        }
+      if (is_needed)
+        add_tile(t, place_of, first, end, layers);
+    }
+    for (std::size_t w = first; w < end; ++w)
+      m_measures[order[w]] = layers[w - first].measures();
+  }
+
+  void add_tile(std::size_t tile,
+                const std::vector<std::size_t>& place_of,
+                std::size_t first,
+                std::size_t end,
+                std::vector<pcs::crowns::Crown_layers>& layers) const
+  {
+    const std::size_t axis_up = m_manifest.axis_up();
+    pcs::IO::Point_reader reader(m_tiles.path_of(tile));
+    pcs::IO::Point_table chunk;
+    while (reader.read(chunk, Labelled_tiles::chunk_size)) {
+      const auto& trees = chunk.property<std::int32_t>("tree");
+      for (std::size_t i = 0; i < trees.size(); ++i) {
+        if (trees[i] < 0 || place_of[static_cast<std::size_t>(trees[i])] == end)
+          continue;
+        const auto& p = chunk.points()[i];
+        layers[place_of[static_cast<std::size_t>(trees[i])] - first].add(
+            horizontal(p, axis_up),
+            m_sign * p[static_cast<int>(axis_up)]);
+      }
+    }
+  }
+
+  const Tile_manifest& m_manifest;
+  const Labelled_tiles& m_tiles;
+  const Plot_trees& m_trees;
+  double m_sign, m_base;
+  std::vector<pcs::crowns::Crown_measures> m_measures;
+};
+
+/// Returns the outlines as GeoJSON, in the horizontal coordinates of the scan. A crown on one line
+/// has no geometry.
+inline nlohmann::ordered_json to_json(const std::vector<pcs::crowns::Crown_measures>& crowns)
+{
+  nlohmann::ordered_json features = nlohmann::ordered_json::array();
+  for (std::size_t t = 0; t < crowns.size(); ++t) {
+    nlohmann::ordered_json geometry;
+    if (crowns[t].outline.size() >= 3) {
+      nlohmann::ordered_json ring = crowns[t].outline;
+      ring.push_back(crowns[t].outline.front()); // rings are closed
+      geometry = {{"type", "Polygon"}, {"coordinates", nlohmann::ordered_json::array({ring})}};
+    }
+    features.push_back(
+        {{"type", "Feature"},
+         {"id", t},
+         {"geometry", geometry},
+         {"properties",
+          {{"tree", t}, {"crown_area", crowns[t].area}, {"crown_volume", crowns[t].volume}}}});
+  }
+  return {{"type", "FeatureCollection"}, {"features", features}};
+}
+
+} // namespace program
+
+#endif // PCS_EXAMPLES_PROGRAMS_CROWNS_PLOT_CROWNS_H
