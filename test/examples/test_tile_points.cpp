@@ -465,11 +465,11 @@ BOOST_FIXTURE_TEST_CASE(one_point_per_voxel_is_kept, Voxel_run)
 
 BOOST_FIXTURE_TEST_CASE(kept_points_depend_neither_on_tiles_nor_on_the_order_of_files, Voxel_run)
 {
-  const auto kept = [this](const std::string& folder) {
+  const auto kept = [this](const std::string& tiles) {
     std::set<std::pair<std::array<double, 3>, std::uint16_t>> result;
-    const Json m = manifest(folder);
+    const Json m = manifest(tiles);
     for (const Json& row : m["tiles"]) {
-      const Table tile = pcs::IO::read_points(path(folder + "/" + row["file"].get<std::string>()));
+      const Table tile = pcs::IO::read_points(path(tiles + "/" + row["file"].get<std::string>()));
       const auto& is_core = tile.property<std::uint8_t>("is_core");
       for (std::size_t i = 0; i < is_core.size(); ++i)
         if (is_core[i] == 1) {
@@ -483,9 +483,9 @@ BOOST_FIXTURE_TEST_CASE(kept_points_depend_neither_on_tiles_nor_on_the_order_of_
   // 0.3 does not divide the cell, and is not a binary fraction; of 0.5, points are equally near
   for (const std::string size : {"0.3", "0.5"}) {
     const auto cut =
-        [&](const std::string& files, const std::string& tiles, const std::string& to) {
+        [&](const std::string& files, const std::string& size_of_tiles, const std::string& to) {
           BOOST_TEST_REQUIRE(run("--input " + files + " --folder " + to + size + " --voxel " +
-                                 size + " --buffer 1 --quiet --tile-points " + tiles) == 0,
+                                 size + " --buffer 1 --quiet --tile-points " + size_of_tiles) == 0,
                              err);
           return kept(to + size);
         };
@@ -507,8 +507,8 @@ BOOST_FIXTURE_TEST_CASE(nothing_remains_of_thinning_that_fails, Voxel_run)
   BOOST_TEST(run("--input a.ply b.ply --folder tiles --voxel 0.5 --tile-points 400") == 1);
   BOOST_TEST(exists("tiles"));
   BOOST_TEST(!has_tiles("tiles"));
-  for (const char* voxel : {"0", "-1", "nan", "inf", "1e-9"}) {
-    BOOST_TEST(run("--input a.ply --folder tiles --voxel " + std::string(voxel)) == 1);
+  for (const char* size : {"0", "-1", "nan", "inf", "1e-9"}) {
+    BOOST_TEST(run("--input a.ply --folder tiles --voxel " + std::string(size)) == 1);
     BOOST_TEST(err.find("--voxel") != std::string::npos, err);
   }
 }
