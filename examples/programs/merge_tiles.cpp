@@ -247,6 +247,11 @@ std::string list(const std::vector<std::string>& items)
   return text + (items.size() > most ? ", ..." : "");
 }
 
+std::string number(double value)
+{
+  return Ordered_json(value).dump(); // the shortest text that is read back as the same number
+}
+
 std::vector<std::string>
 all_warnings(const Tile_manifest& manifest, const Options& options, const Merged_plot& plot)
 {
@@ -267,6 +272,16 @@ all_warnings(const Tile_manifest& manifest, const Options& options, const Merged
                        std::to_string(plot.unmatched_points) + " points match no foot within " +
                        tolerance + ": " + list(items) +
                        "; their points have no tree; use a larger --buffer or --tolerance");
+  items.clear();
+  for (const auto& [t, k] : plot.trees->missed()) {
+    const Position_2 p = plot.trees->position(plot.tiles.results()[t]->trees[k].foot);
+    items.push_back("(" + number(p[0]) + ", " + number(p[1]) + ")");
+  }
+  if (!items.empty())
+    warnings.push_back(std::to_string(items.size()) +
+                       " tree(s) are found in the buffer of a tile, but not by the tile whose core "
+                       "has the foot; there, the tree is missing or part of another: " +
+                       list(items) + "; look at them");
   items.clear();
   for (const auto& [a, b] : plot.trees->twins())
     items.push_back(std::to_string(a) + " and " + std::to_string(b));
@@ -296,11 +311,6 @@ all_warnings(const Tile_manifest& manifest, const Options& options, const Merged
                          " files of trees of another run; remove them");
   }
   return warnings;
-}
-
-std::string number(double value)
-{
-  return Ordered_json(value).dump(); // the shortest text that is read back as the same number
 }
 
 /// Returns whether a tree gets a file.
@@ -338,6 +348,11 @@ Ordered_json to_json(const Tile_manifest& manifest, const Options& options, cons
                          {"tree", k},
                          {"foot", plot.tiles.results()[t]->trees[k].foot},
                          {"points", plot.tiles.parts(t)[k].number_of_points}});
+  Ordered_json missed = Ordered_json::array();
+  for (const auto& [t, k] : plot.trees->missed())
+    missed.push_back({{"tile", manifest.tiles()[t].file},
+                      {"tree", k},
+                      {"foot", plot.tiles.results()[t]->trees[k].foot}});
   Ordered_json joined = Ordered_json::array();
   for (const Plot_trees::Joined_tree& tree : plot.trees->joined())
     joined.push_back({{"tree", tree.tree},
@@ -353,6 +368,7 @@ Ordered_json to_json(const Tile_manifest& manifest, const Options& options, cons
           {"tolerance", plot.tolerance},
           {"unmatched_points", plot.unmatched_points},
           {"unmatched_trees", unmatched},
+          {"missed_trees", missed},
           {"joined_trees", joined},
           {"close_feet", plot.trees->twins()},
           {"warnings", all_warnings(manifest, options, plot)}};

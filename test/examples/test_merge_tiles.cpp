@@ -115,6 +115,8 @@ struct Merge_run : Program_run
     const Json& row = manifest["tiles"][tile];
     std::vector<std::size_t> order(number_of_trees);
     std::iota(order.begin(), order.end(), 0);
+    if (hidden && has_core_foot(tile, *hidden))
+      order.erase(order.begin() + std::ptrdiff_t(*hidden));
     for (std::size_t i = order.size(); i > 1; --i)
       std::swap(order[i - 1], order[engine() % i]);
     const Table all = pcs::IO::read_points(path(tile_folder + "/" + name_of(tile)));
@@ -151,10 +153,11 @@ struct Merge_run : Program_run
         continue;
       rows.push_back(i);
       const std::int32_t t = trees[index[i]];
-      tree.push_back(t < 0 ? -1
-                           : std::int32_t(std::find(order.begin(), order.end(), std::size_t(t)) -
-                                          order.begin()));
-      if (t >= 0)
+      tree.push_back(t < 0 || std::count(order.begin(), order.end(), std::size_t(t)) == 0
+                         ? -1
+                         : std::int32_t(std::find(order.begin(), order.end(), std::size_t(t)) -
+                                        order.begin()));
+      if (tree.back() >= 0)
         ++result.trees[std::size_t(tree.back())].number_of_core_points;
     }
     for (const char* corner : {"low", "high"})
@@ -189,6 +192,7 @@ struct Merge_run : Program_run
   std::vector<std::array<double, 3>> feet;
   std::map<std::size_t, std::array<double, 3>> first_foot_in; ///< foot of tree 0, by tile
   bool has_samples = false;
+  std::optional<std::size_t> hidden; ///< a tree that its owner does not find
   std::string tile_folder = "tiles";
   std::vector<std::int32_t> trees; ///< of the points of the plot
   Table plot;
@@ -332,6 +336,7 @@ BOOST_AUTO_TEST_CASE(missing_and_damaged_tiles_do_not_end_the_run)
                name_of(tile) << " in " << err);
   report = Json::parse(content("r.json"));
   BOOST_TEST(report["failed_tiles"].size() == 8u); // the last one twice: result and tile
+  BOOST_TEST(report["missed_trees"].empty());
   BOOST_TEST(report["missing_points"] == manifest["tiles"][7]["core_points"]);
   const Table points = pcs::IO::read_points(path("out.ply"));
   BOOST_TEST(points.number_of_points() ==
@@ -390,6 +395,22 @@ BOOST_AUTO_TEST_CASE(feet_of_different_tiles_that_are_near_are_listed)
   BOOST_TEST_REQUIRE(run("--tiles tiles/tiles.json --results results --report r.json") == 0, err);
   BOOST_TEST(Json::parse(content("r.json"))["close_feet"] == Json::parse("[[0, 1]]"));
   BOOST_TEST(err.find("do not share their points: 0 and 1") != std::string::npos, err);
+}
+
+BOOST_AUTO_TEST_CASE(a_tree_that_only_other_tiles_find_is_named)
+{
+  hidden = 5;
+  write_results("results", 1, 0);
+  BOOST_TEST_REQUIRE(run("--tiles tiles/tiles.json --results results --report r.json") == 0, err);
+  report = Json::parse(content("r.json"));
+  BOOST_TEST(report["trees"] == number_of_trees - 1);
+  BOOST_TEST_REQUIRE(report["missed_trees"].size() == 1u); // several tiles see it, at one place
+  BOOST_TEST((report["missed_trees"][0]["foot"] == Json(feet[5])));
+  BOOST_TEST(err.find("not by the tile whose core has the foot") != std::string::npos, err);
+  hidden.reset();
+  write_results("results", 1, 0);
+  BOOST_TEST_REQUIRE(run("--tiles tiles/tiles.json --results results --report r.json") == 0, err);
+  BOOST_TEST(Json::parse(content("r.json"))["missed_trees"].empty());
 }
 
 BOOST_AUTO_TEST_CASE(a_tree_that_is_found_on_both_sides_of_a_border_is_one_tree)

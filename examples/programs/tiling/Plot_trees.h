@@ -96,7 +96,7 @@ public:
     join_twins(results, find_twins(tolerance));
     m_twins = find_twins(tolerance);
     for (std::size_t t = 0; t < results.size(); ++t)
-      add_parts(t, results[t]);
+      add_parts(t, results, owner[t], tolerance);
   }
 
   const std::vector<Plot_tree>& trees() const { return m_trees; }
@@ -107,6 +107,10 @@ public:
   /// Returns tile and tree of all trees with points in the core that match no tree of the plot.
   const std::vector<std::pair<std::size_t, std::size_t>>& unmatched() const { return m_unmatched; }
 
+  /// Returns tile and tree of trees that a tile has in its buffer only, and the owner of their
+  /// place has not found; one for each place.
+  const std::vector<std::pair<std::size_t, std::size_t>>& missed() const { return m_missed; }
+
   /// Returns pairs of trees of different tiles whose feet are within the tolerance, although they
   /// do not share their points.
   const std::vector<std::pair<std::size_t, std::size_t>>& twins() const { return m_twins; }
@@ -114,12 +118,13 @@ public:
   /// Returns the trees that are not counted again, in the order of the trees of the plot.
   const std::vector<Joined_tree>& joined() const { return m_joined; }
 
-private:
+  /// Returns the horizontal coordinates of a foot.
   Position_2 position(const std::array<double, 3>& foot) const
   {
     return horizontal(pcs::IO::Point_table::Point_3(foot[0], foot[1], foot[2]), m_axis_up);
   }
 
+private:
   double distance(const std::array<double, 3>& a, const std::array<double, 3>& b) const
   {
     const Position_2 p = position(a), q = position(b);
@@ -143,17 +148,23 @@ private:
   }
 
   /// Adds the parts of the trees in the core of a tile.
-  void add_parts(std::size_t t, const std::optional<Tile_result>& result)
+  void add_parts(std::size_t t,
+                 const Results& results,
+                 const std::vector<std::size_t>& owner,
+                 double tolerance)
   {
     std::set<std::int32_t> parts, cut_parts; // several trees of a tile may be one of the plot
     for (std::size_t k = 0; k < m_tree_of[t].size(); ++k) {
-      const Tree_of_tile& tree = result->trees[k];
-      if (tree.number_of_core_points == 0)
-        continue;
+      const Tree_of_tile& tree = results[t]->trees[k];
       if (m_tree_of[t][k] == no_tree) {
-        m_unmatched.emplace_back(t, k);
+        if (tree.number_of_core_points > 0)
+          m_unmatched.emplace_back(t, k);
+        else if (results[owner[k]]) // else the tile has failed, which is known
+          add_missed(t, k, tree.foot, tolerance);
         continue;
       }
+      if (tree.number_of_core_points == 0)
+        continue;
       parts.insert(m_tree_of[t][k]);
       if (tree.is_at_rim)
         cut_parts.insert(m_tree_of[t][k]);
@@ -164,6 +175,15 @@ private:
       Plot_tree& own = m_trees[static_cast<std::size_t>(p)];
       own.number_of_cut_parts += own.tile != t;
     }
+  }
+
+  void add_missed(std::size_t t, std::size_t k, const std::array<double, 3>& foot, double tolerance)
+  {
+    for (const std::array<double, 3>& place : m_missed_feet)
+      if (distance(place, foot) <= tolerance)
+        return;
+    m_missed_feet.push_back(foot);
+    m_missed.emplace_back(t, k);
   }
 
   /// Makes one tree of twins that share most of their points.
@@ -235,7 +255,8 @@ private:
   std::size_t m_axis_up;
   std::vector<Plot_tree> m_trees;
   std::vector<std::vector<std::int32_t>> m_tree_of;
-  std::vector<std::pair<std::size_t, std::size_t>> m_unmatched, m_twins;
+  std::vector<std::pair<std::size_t, std::size_t>> m_unmatched, m_missed, m_twins;
+  std::vector<std::array<double, 3>> m_missed_feet;
   std::vector<Joined_tree> m_joined;
 };
 
