@@ -291,12 +291,13 @@ inline double jackknife_factor(double fraction)
   return fraction > 0 && fraction < 1 ? std::max(1.0, std::sqrt(fraction / (1 - fraction))) : 1;
 }
 
-/// Adds a warning about values that differ between resampled copies.
+/// Adds a warning about values that differ between resampled copies: if two standard deviations
+/// exceed 1 % of the height, 2 % of the diameter at breast height, 5 % of the length of the trunk,
+/// 5 % of the volume, or 4 % of the breast height for the position of the root.
 inline void warn_of_spread(const Skeleton_report& r, std::vector<std::string>& sentences)
 {
-  // relative deviations that eight of ten virtual scans do not reach [-]
-  constexpr double max_height = 0.005, max_diameter = 0.01, max_trunk = 0.04, max_volume = 0.03;
-  constexpr double max_root = 0.04; // of the breast height [-]
+  constexpr double max_height = 0.005, max_diameter = 0.01, max_trunk = 0.025, max_volume = 0.025;
+  constexpr double max_root = 0.02; // of the breast height [-]
   const Skeleton_spread& s = r.spread;
   std::string list;
   const auto add = [&](const char* name, double deviation, double value, double limit) {
