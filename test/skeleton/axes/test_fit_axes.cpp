@@ -222,7 +222,8 @@ BOOST_AUTO_TEST_CASE(a_chain_goes_straight_on_rather_than_to_the_longer_branch)
   const Index straight = add_row(fork, Vec3::UnitZ(), 12);
   tree.spread.assign(tree.size(), spacing);
   tree.next_in_ring.assign(tree.size(), none);
-  tree.first.assign(tree.size() + 1, 0);
+  for (Index v = 0; v <= tree.size(); ++v) // one point each
+    tree.first.push_back(v);
   const std::vector<Chain> chains = decompose_chains(scan, tree);
   BOOST_REQUIRE(chains.size() == 2u);
   BOOST_TEST(chains[0].nodes.front() == 0u);

@@ -8,6 +8,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -83,6 +84,17 @@ BOOST_AUTO_TEST_CASE(an_axis_above_the_root_is_extended)
   BOOST_TEST(trunk.align() == 0, boost::test_tools::tolerance(1e-12));
 }
 
+BOOST_AUTO_TEST_CASE(a_short_extension_moves_the_first_node)
+{
+  Trunk trunk({0, 0, -0.03});
+  trunk.set.axes[0].axis.front().is_measured = true;
+  BOOST_TEST(trunk.align() == -0.03, boost::test_tools::tolerance(1e-12));
+  BOOST_TEST(trunk.axis().size() == number_of_segments + 1);
+  BOOST_TEST((trunk.axis().front().point - Vec3(0, 0, -0.03)).norm() < 1e-12);
+  BOOST_TEST(trunk.axis().front().is_measured);
+  BOOST_TEST(trunk.are_points_at_their_segments(1e-9));
+}
+
 BOOST_AUTO_TEST_CASE(an_axis_that_begins_below_the_root_is_cut)
 {
   Trunk trunk({0, 0.2, 0.73});
@@ -102,6 +114,27 @@ BOOST_AUTO_TEST_CASE(the_root_may_be_at_the_tip)
   BOOST_TEST((shorter.axis().back().point - Vec3(0, 0, height - 0.48)).norm() < 1e-12);
   BOOST_TEST(longer.are_points_at_their_segments(1e-9));
   BOOST_TEST(shorter.are_points_at_their_segments(0.5));
+}
+
+BOOST_AUTO_TEST_CASE(a_leaning_trunk_begins_at_the_height_of_the_root)
+{
+  // 30 degrees from the vertical; the root is beside the line of the axis
+  Trunk trunk({-0.2, 0.2, -0.5});
+  for (Axis_node& node : trunk.set.axes[0].axis)
+    node.point = node.point.z() * Vec3(0.5, 0, std::sqrt(0.75));
+  BOOST_TEST(trunk.align() == -0.5, boost::test_tools::tolerance(1e-12));
+  const Vec3& base = trunk.axis().front().point;
+  BOOST_TEST(base.z() == -0.5, boost::test_tools::tolerance(1e-12));
+  BOOST_TEST(base.x() == -0.5 * std::tan(std::acos(-1.0) / 6), boost::test_tools::tolerance(1e-12));
+}
+
+BOOST_AUTO_TEST_CASE(a_lying_trunk_begins_at_its_root)
+{
+  Trunk trunk({-0.5, 0, 0.1});
+  for (Axis_node& node : trunk.set.axes[0].axis)
+    node.point = Vec3(node.point.z(), 0, 0);
+  BOOST_TEST(trunk.align() == -0.5, boost::test_tools::tolerance(1e-12));
+  BOOST_TEST((trunk.axis().front().point - Vec3(-0.5, 0, 0)).norm() < 1e-12);
 }
 
 BOOST_AUTO_TEST_CASE(a_root_far_away_changes_nothing)

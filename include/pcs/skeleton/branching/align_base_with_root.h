@@ -26,6 +26,7 @@ struct Base_alignment_options
   double lateral = 4;    ///< largest distance of the root from the line of the base, in radii [-]
   double longest = 0.25; ///< largest change, as a fraction of the length of the axis [-]
   double step = 0.5;     ///< distance of added nodes, in radii [-]
+  double steep = 0.7;    ///< least rise per length of a trunk that is measured vertically [-]
 };
 
 namespace internal {
@@ -40,12 +41,12 @@ inline Vec3 direction_of_base(const Axis& axis, double length)
   return d.norm() > 0 ? Vec3(d.normalized()) : Vec3(Vec3::Zero());
 }
 
-/// Removes the nodes of an axis whose coordinate along `d` is less than `t`, and adds one at `t`.
-inline void cut_base(const Vec3& d, double t, Axis& axis)
+/// Cuts an axis at the coordinate `t` along `n`: removes the nodes below, and adds one there.
+inline void cut_base(const Vec3& n, double t, Axis& axis)
 {
   constexpr double most = 0.9; // of an edge, so that no two nodes coincide [-]
   const Vec3 base = axis[0].point;
-  const auto at = [&](std::size_t k) { return (axis[k].point - base).dot(d); };
+  const auto at = [&](std::size_t k) { return (axis[k].point - base).dot(n); };
   std::size_t k = 0;
   while (k + 2 < axis.size() && at(k + 1) < t)
     ++k;
@@ -56,16 +57,21 @@ inline void cut_base(const Vec3& d, double t, Axis& axis)
   axis.erase(axis.begin(), axis.begin() + static_cast<std::ptrdiff_t>(k));
 }
 
-/// Adds a piece of some length before the base, with nodes at equal distances of at most `step`.
-inline void extend_base(const Vec3& d, double length, double step, Axis& axis)
+/// Moves the base by `piece` if that is at most `step`; otherwise adds nodes at equal distances of at
+/// most `step`.
+inline void extend_base(const Vec3& piece, double step, Axis& axis)
 {
-  const auto count = static_cast<std::size_t>(std::ceil(length / step));
+  if (piece.norm() <= step) {
+    axis[0].point += piece;
+    return;
+  }
+  const auto count = static_cast<std::size_t>(std::ceil(piece.norm() / step));
   Axis_node node = axis[0];
   node.is_measured = false;
   node.radius_error = node.radius;
   std::vector<Axis_node> added(count, node);
   for (std::size_t k = 0; k < count; ++k)
-    added[k].point -= (double(count - k) / double(count)) * length * d;
+    added[k].point += (double(count - k) / double(count)) * piece;
   axis.insert(axis.begin(), added.begin(), added.end());
 }
 
@@ -74,7 +80,7 @@ inline void extend_base(const Vec3& d, double length, double step, Axis& axis)
 inline void shift_segments(Index a, std::size_t before, std::size_t after, Axis_set& set)
 {
   const auto shifted = [&](std::size_t k) {
-    return after > before ? k + (after - before) : k - std::min(k, before - after);
+    return after >= before ? k + (after - before) : k - std::min(k, before - after);
   };
   if (set.axes[a].meeting > 0)
     set.axes[a].meeting = shifted(set.axes[a].meeting);
@@ -103,9 +109,10 @@ inline void clamp_segments(Index a, std::size_t size, Axis_set& set)
   With the base `b` of the axis, its unit direction `d` into the axis, and the points `p_i` of the
   root, the new base is at the coordinate
 
-      t = min_i (p_i - b) . d                                                              [L]
+      t = min_i (p_i - b) . n                                                              [L]
 
-  along `d`. The axis is cut there if `t > 0`, and extended by a straight piece if `t < 0`. Nothing
+  along `n`, which is the vertical for a steep trunk, `d_z >= steep`, and `d` otherwise. The axis is
+  cut there if `t > 0`, and extended by a straight piece along `d` if `t < 0`. z points upwards. Nothing
   changes if the root is too far from the line of the base, or if `|t|` is too large for the length
   of the axis. The base is the first node, or the last one if `is_reversed`. Points of removed
   segments count for the first remaining one. Returns `t`, or 0 if nothing changed. O(points).
@@ -127,21 +134,23 @@ inline double align_base_with_root(const Scan& scan,
   const Vec3 d = internal::direction_of_base(
       turned,
       std::max(rules.sound * radius, rules.sound_spacings * scan.spacing));
+  const Vec3 n = d.z() >= rules.steep ? Vec3(Vec3::UnitZ()) : d;
   double t = std::numeric_limits<double>::infinity();
   Vec3 mean = Vec3::Zero();
   for (const Index i : root) {
     const Vec3 p = scan.points[i] - turned[0].point;
-    t = std::min(t, p.dot(d));
+    t = std::min(t, p.dot(n));
     mean += p / double(root.size());
   }
   const double lateral = (mean - mean.dot(d) * d).norm();
-  if (t == 0 || lateral > rules.lateral * radius || std::abs(t) > rules.longest * length_of(axis))
+  if (t == 0 || d.isZero() || lateral > rules.lateral * radius ||
+      std::abs(t) > rules.longest * length_of(axis))
     return 0;
   const std::size_t before = turned.size();
   if (t > 0)
-    internal::cut_base(d, t, turned);
+    internal::cut_base(n, t, turned);
   else
-    internal::extend_base(d, -t, rules.step * radius, turned);
+    internal::extend_base(t / d.dot(n) * d, rules.step * radius, turned);
   const std::size_t after = turned.size();
   if (is_reversed)
     std::reverse(turned.begin(), turned.end());

@@ -37,6 +37,7 @@ struct Branching_options
 struct Joined_axes
 {
   int regroupings = 0; ///< completed rounds [count]
+  int aligned = -1;    ///< round in which the base was last aligned with the root; -1: none
   Index root = none;   ///< the axis of the root
   std::vector<Joint> joints;
   Branch_tree tree;
@@ -54,7 +55,9 @@ void join_axes(const Scan& scan,
 {
   joined.root = root_axis(scan, axes, root, hint);
   const bool is_reversed = is_root_reversed(scan, axes.axes[joined.root].axis, root);
-  align_base_with_root(scan, root, joined.root, is_reversed, options.base, axes);
+  if (joined.aligned != joined.regroupings) // once, even if a cancelled call is repeated
+    align_base_with_root(scan, root, joined.root, is_reversed, options.base, axes);
+  joined.aligned = joined.regroupings;
   const Axis_joiner joiner(axes, scan.spacing, options.joints);
   joined.joints = joiner.template run<ConcurrencyTag>(joined.root);
   joined.joints[joined.root].is_reversed = is_reversed;
