@@ -57,8 +57,8 @@ inline void cut_base(const Vec3& n, double t, Axis& axis)
   axis.erase(axis.begin(), axis.begin() + static_cast<std::ptrdiff_t>(k));
 }
 
-/// Moves the base by `piece` if that is at most `step`; otherwise adds nodes at equal distances of at
-/// most `step`.
+/// Moves the base by `piece` if that is at most `step` long. Otherwise adds nodes at equal
+/// distances of at most `step`.
 inline void extend_base(const Vec3& piece, double step, Axis& axis)
 {
   if (piece.norm() <= step) {
@@ -111,11 +111,12 @@ inline void clamp_segments(Index a, std::size_t size, Axis_set& set)
 
       t = min_i (p_i - b) . n                                                              [L]
 
-  along `n`, which is the vertical for a steep trunk, `d_z >= steep`, and `d` otherwise. The axis is
-  cut there if `t > 0`, and extended by a straight piece along `d` if `t < 0`. z points upwards. Nothing
-  changes if the root is too far from the line of the base, or if `|t|` is too large for the length
-  of the axis. The base is the first node, or the last one if `is_reversed`. Points of removed
-  segments count for the first remaining one. Returns `t`, or 0 if nothing changed. O(points).
+  along `n`, which is the vertical for a steep trunk, `d_z >= steep`, and `d` otherwise; z points
+  upwards. The axis is cut there if `t > 0`, and extended by a straight piece along `d` if `t < 0`.
+  Nothing changes if the root is too far from the line of the base, or if `|t|` is too large for
+  the length of the axis. The base is the first node, or the last one if `is_reversed`. Points of
+  removed segments count for the first remaining one. Returns `t`, or 0 if nothing changed.
+  O(points).
 */
 inline double align_base_with_root(const Scan& scan,
                                    const std::vector<Index>& root,
