@@ -50,6 +50,7 @@ struct Scan_station
   \ingroup PkgPcsSkeletonRef
   \brief standard deviations of a skeleton among resampled copies of its scan.
 
+  The skeleton itself counts like a copy if the copies have at least half of the points of the scan.
   See `number_of_resamples` of `Tree_skeletonization`. Copies of small scans share most of their
   points, so the deviations are too small; copies of large scans are thinned, so they tend to be too
   large. `standard_errors()` takes both into account.

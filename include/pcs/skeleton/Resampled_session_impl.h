@@ -83,9 +83,13 @@ template <class ConcurrencyTag>
 Skeleton_report Resampled_session<ConcurrencyTag>::report() const
 {
   Skeleton_report report = m_session->report();
-  report.spread = m_copies.spread();
-  report.spread.number_of_empty_copies =
-      m_number_of_completed_copies - report.spread.number_of_copies;
+  Copy_descriptors all = m_copies;
+  if (m_copies.size() > 0 && report.status == Status::converged && are_comparable())
+    all.add(report, internal::root_of(*m_session));
+  report.spread = all.spread();
+  report.spread.number_of_copies = m_copies.size();
+  report.spread.number_of_leafy_copies = m_copies.number_of_leafy_copies;
+  report.spread.number_of_empty_copies = m_number_of_completed_copies - m_copies.size();
   report.spread.is_leaf_removal_changed = m_is_leaf_removal_changed;
   report.spread.is_displaced = m_is_displaced;
   if (m_is_displaced) { // displaced coordinates are not rounded
@@ -136,7 +140,7 @@ void Resampled_session<ConcurrencyTag>::vote_on_leaves()
   if (m_has_voted || m_hints.leaf_removal != Leaf_removal::where_found || !are_comparable())
     return;
   m_has_voted = true;
-  const Leaf_removal vote = majority_on_leaves(m_copies.height.size(),
+  const Leaf_removal vote = majority_on_leaves(m_copies.size(),
                                                m_copies.number_of_leafy_copies,
                                                m_session->report().number_of_leaf_points > 0);
   if (vote == Leaf_removal::where_found)

@@ -38,6 +38,8 @@ struct Copy_descriptors
   std::vector<double> root[3];
   std::size_t number_of_leafy_copies = 0;
 
+  std::size_t size() const { return height.size(); }
+
   void add(const Skeleton_report& r, const Vec3& root_position)
   {
     number_of_leafy_copies += r.number_of_leaf_points > 0;
