@@ -128,6 +128,19 @@ BOOST_AUTO_TEST_CASE(a_leaning_trunk_begins_at_the_height_of_the_root)
   BOOST_TEST(base.x() == -0.5 * std::tan(std::acos(-1.0) / 6), boost::test_tools::tolerance(1e-12));
 }
 
+BOOST_AUTO_TEST_CASE(an_axis_whose_base_follows_a_buttress_begins_at_the_height_of_the_root)
+{
+  // the lowest 0.4 m are nearly horizontal
+  Trunk trunk({-0.3, 0, -0.25});
+  Axis& axis = trunk.set.axes[0].axis;
+  axis[0].point = Vec3(-0.4, 0, 0.3);
+  axis[1].point = Vec3(-0.2, 0, 0.35);
+  BOOST_TEST(trunk.align() == -0.55, boost::test_tools::tolerance(1e-12));
+  BOOST_TEST(axis.front().point.z() == -0.25, boost::test_tools::tolerance(1e-12));
+  BOOST_TEST(axis.front().point.x() < -0.4);
+  BOOST_TEST(axis.front().point.x() > -0.5);
+}
+
 BOOST_AUTO_TEST_CASE(a_lying_trunk_begins_at_its_root)
 {
   Trunk trunk({-0.5, 0, 0.1});

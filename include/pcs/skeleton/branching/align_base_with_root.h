@@ -24,7 +24,8 @@ struct Base_alignment_options
   double sound = 4;          ///< length that defines the direction of the base, in radii [-] ...
   double sound_spacings = 8; ///< ... and in spacings, whichever is larger [-]
   double lateral = 4;    ///< largest distance of the root from the line of the base, in radii [-]
-  double longest = 0.25; ///< largest change, as a fraction of the length of the axis [-]
+  double longest = 0.25; ///< largest change, and length of the lowest part of the trunk, as a
+                         ///< fraction of the length of the axis [-]
   double step = 0.5;     ///< distance of added nodes, in radii [-]
   double steep = 0.7;    ///< least rise per length of a trunk that is measured vertically [-]
 };
@@ -111,12 +112,13 @@ inline void clamp_segments(Index a, std::size_t size, Axis_set& set)
 
       t = min_i (p_i - b) . n                                                              [L]
 
-  along `n`, which is the vertical for a steep trunk, `d_z >= steep`, and `d` otherwise; z points
-  upwards. The axis is cut there if `t > 0`, and extended by a straight piece along `d` if `t < 0`.
-  Nothing changes if the root is too far from the line of the base, or if `|t|` is too large for
-  the length of the axis. The base is the first node, or the last one if `is_reversed`. Points of
-  removed segments count for the first remaining one. Returns `t`, or 0 if nothing changed.
-  O(points).
+  along `n`. This is the vertical if the lowest part of the trunk rises by at least `steep` per
+  length, and `d` otherwise; z points upwards. The axis is cut there if `t > 0`, and extended by a
+  straight piece if `t < 0`: along `d`, or along the lowest part of the trunk if `d` follows a
+  buttress, `d . n < steep`. Nothing changes if the root is too far from the line of the base, or if
+  `|t|` is too large for the length of the axis. The base is the first node, or the last one if
+  `is_reversed`. Points of removed segments count for the first remaining one. Returns `t`, or 0 if
+  nothing changed. O(points).
 */
 inline double align_base_with_root(const Scan& scan,
                                    const std::vector<Index>& root,
@@ -131,11 +133,14 @@ inline double align_base_with_root(const Scan& scan,
   Axis turned = axis;
   if (is_reversed)
     std::reverse(turned.begin(), turned.end());
-  const double radius = std::max(turned[0].radius, scan.spacing);
-  const Vec3 d = internal::direction_of_base(
-      turned,
-      std::max(rules.sound * radius, rules.sound_spacings * scan.spacing));
-  const Vec3 n = d.z() >= rules.steep ? Vec3(Vec3::UnitZ()) : d;
+  const double radius = std::max(turned[0].radius, scan.spacing), length = length_of(axis);
+  const double sound = std::max(rules.sound * radius, rules.sound_spacings * scan.spacing);
+  const Vec3 trunk_direction =
+      internal::direction_of_base(turned, std::max(sound, rules.longest * length));
+  Vec3 d = internal::direction_of_base(turned, sound);
+  const Vec3 n = trunk_direction.z() >= rules.steep ? Vec3(Vec3::UnitZ()) : d;
+  if (d.dot(n) < rules.steep) // along a buttress
+    d = trunk_direction;
   double t = std::numeric_limits<double>::infinity();
   Vec3 mean = Vec3::Zero();
   for (const Index i : root) {
@@ -145,7 +150,7 @@ inline double align_base_with_root(const Scan& scan,
   }
   const double lateral = (mean - mean.dot(d) * d).norm();
   if (t == 0 || d.isZero() || lateral > rules.lateral * radius ||
-      std::abs(t) > rules.longest * length_of(axis))
+      std::abs(t) > rules.longest * length)
     return 0;
   const std::size_t before = turned.size();
   if (t > 0)
