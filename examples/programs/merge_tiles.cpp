@@ -22,6 +22,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -48,7 +49,7 @@ struct Options
 {
   std::string tiles, results, table, points, folder, crowns, report;
   std::optional<double> tolerance, crown_base;
-  std::size_t min_points = 1000;
+  std::int64_t min_points = 1000;
   std::int64_t open_files = 100;
   bool is_quiet = false;
 };
@@ -107,6 +108,7 @@ void declare(CLI::App& app, Options& options)
                  options.tolerance,
                  "largest distance of feet of one tree; default: a quarter of the breast height");
   app.add_option("--min-points", options.min_points, "trees with fewer points get no file")
+      ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   app.add_option("--open-files", options.open_files, "files that are open at the same time")
       ->check(CLI::Range(std::int64_t(2), std::int64_t(10000)))
@@ -131,6 +133,32 @@ void check(const Options& options)
     throw pcs::IO_error(options.results, "is not a directory, expected the results of the tiles");
 }
 
+/// Returns whether a path is that of a file of a tree in a folder.
+bool is_tree_file(const std::string& path, const std::string& folder)
+{
+  const auto real = [](const std::filesystem::path& p) {
+    std::error_code error;
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(p), error);
+  };
+  const std::filesystem::path file(path);
+  return !path.empty() && Tree_files::is_name(file.filename().string()) &&
+         real(file).parent_path() == real(std::filesystem::path(folder) / "x").parent_path();
+}
+
+/// Checks that the points can be written, before anything is computed.
+void check_points(const std::string& path)
+{
+  std::string extension = std::filesystem::path(path).extension().string();
+  for (char& c : extension)
+    c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (extension == ".las" || extension == ".laz")
+    throw pcs::Invalid_input(
+        "--points " + path +
+        " is LAS or LAZ, which cannot be merged from tiles; write PLY or text, "
+        "and convert it");
+  check_output(path, pcs::IO::Point_schema());
+}
+
 /// Refuses results that would replace inputs, or each other.
 void check_files(const Options& options, const Tile_manifest& manifest)
 {
@@ -144,10 +172,12 @@ void check_files(const Options& options, const Tile_manifest& manifest)
     distinct.add_input(points_of_result(options.results, name));
     distinct.add_input(trees_of_result(options.results, name));
   }
-  distinct.add_output(options.table);
-  distinct.add_output(options.points);
-  distinct.add_output(options.crowns);
-  distinct.add_output(options.report);
+  for (const std::string& path : {options.table, options.points, options.crowns, options.report}) {
+    distinct.add_output(path);
+    if (!options.folder.empty() && is_tree_file(path, options.folder))
+      throw pcs::Invalid_input(path + " has the name of a file of a tree in --folder; choose "
+                                      "another name");
+  }
 }
 
 void make_folder(const std::string& folder)
@@ -183,9 +213,13 @@ struct Merged_plot
     tolerance = options.tolerance.value_or(tolerance_by_breast_height * breast_height);
     trees = std::make_unique<Plot_trees>(manifest, tiles.results(), tolerance);
     count_points(manifest);
-    if (!options.table.empty() || !options.crowns.empty())
-      crowns = Plot_crowns(manifest, tiles, *trees, options.crown_base.value_or(breast_height))
-                   .measures();
+    if (!options.table.empty() || !options.crowns.empty()) {
+      const Plot_crowns found(manifest, tiles, *trees, options.crown_base.value_or(breast_height));
+      crowns = found.measures();
+      for (std::size_t p = 0; p < crowns.size(); ++p)
+        if (found.is_too_high()[p])
+          trees_without_crown.push_back(std::to_string(p));
+    }
     if (!options.points.empty() && !manifest.blocks().empty())
       blocks = std::make_unique<Labelled_blocks>(
           manifest,
@@ -204,6 +238,7 @@ struct Merged_plot
   std::unique_ptr<Labelled_blocks> blocks; ///< if all points of a thinned plot are wanted
   std::vector<Failure> failed_blocks;
   std::vector<pcs::crowns::Crown_measures> crowns; ///< of each tree, if they are wanted
+  std::vector<std::string> trees_without_crown;    ///< because of a point too far above the foot
   std::vector<std::uint64_t> points;               ///< of each tree
   std::vector<double> heights;                     ///< of each tree [L]
   std::uint64_t number_of_points = 0, unassigned_points = 0, unmatched_points = 0;
@@ -282,6 +317,12 @@ all_warnings(const Tile_manifest& manifest, const Options& options, const Merged
                        " tree(s) are found in the buffer of a tile, but not by the tile whose core "
                        "has the foot; there, the tree is missing or part of another: " +
                        list(items) + "; look at them");
+  if (!plot.trees_without_crown.empty())
+    warnings.push_back(
+        std::to_string(plot.trees_without_crown.size()) +
+        " tree(s) have points more than 500000 above the foot, so their crowns are not "
+        "measured: " +
+        list(plot.trees_without_crown) + "; remove these points from the scans");
   items.clear();
   for (const auto& [a, b] : plot.trees->twins())
     items.push_back(std::to_string(a) + " and " + std::to_string(b));
@@ -316,7 +357,8 @@ all_warnings(const Tile_manifest& manifest, const Options& options, const Merged
 /// Returns whether a tree gets a file.
 bool has_file(const Options& options, std::uint64_t number_of_points)
 {
-  return !options.folder.empty() && number_of_points >= options.min_points;
+  return !options.folder.empty() &&
+         number_of_points >= static_cast<std::uint64_t>(options.min_points);
 }
 
 std::string table_of(const Tile_manifest& manifest, const Options& options, const Merged_plot& plot)
@@ -420,6 +462,8 @@ bool run(const Options& options)
   pcs::internal::Stopwatch watch;
   const Tile_manifest manifest(options.tiles);
   check_files(options, manifest);
+  if (!options.points.empty())
+    check_points(options.points);
   std::unique_ptr<Report_file> table, crowns, report;
   if (!options.table.empty())
     table = std::make_unique<Report_file>(options.table);

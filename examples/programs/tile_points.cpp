@@ -400,6 +400,10 @@ int run(const Options& options)
                    plot.thinning != nullptr);
   for (std::size_t t = 0; t < tree.tiles().size(); ++t)
     distinct.add_output(tiles.path_of(t));
+  if (plot.thinning)
+    for (std::size_t b = 0; b < plot.blocks->tiles().size(); ++b)
+      distinct.add_output(
+          (std::filesystem::path(options.folder) / Voxel_thinning::name_of_file(b)).string());
   tiles.check_space(tree.estimated_points());
   const double seconds_count = stage.lap();
 

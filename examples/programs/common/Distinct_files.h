@@ -31,13 +31,14 @@ private:
     bool is_written;
   };
 
-  /// Returns the canonical path, which makes spellings comparable. A path that does not exist yet
-  /// is normalised.
+  /// Returns the canonical absolute path, which makes spellings comparable. The part that does not
+  /// exist yet is normalised.
   static std::string real(const std::string& path)
   {
     std::error_code error;
-    const auto canonical = std::filesystem::weakly_canonical(path, error);
-    return (error ? std::filesystem::absolute(path).lexically_normal() : canonical).string();
+    const auto absolute = std::filesystem::absolute(path);
+    const auto canonical = std::filesystem::weakly_canonical(absolute, error);
+    return (error ? absolute.lexically_normal() : canonical).string();
   }
 
   void add(const std::string& path, bool is_written)

@@ -23,14 +23,17 @@
 namespace program {
 
 /*!
-  The crown of a tree consists of its points at or above a height above the foot. Trees are measured
-  in groups in the order of their tiles, and only the tiles with points of a group are read for it.
+  The crown of a tree consists of its points at or above a height above the foot. A tree with a
+  point too far above its foot, which is no point of a tree, has no crown. Trees are measured in
+  groups in the order of their tiles, and only the tiles with points of a group are read for it.
 */
 class Plot_crowns
 {
 public:
   /// Trees that are measured at a time; a tree needs some 60 kB.
   static constexpr std::size_t group_size = 1000;
+  /// Largest height above the base of a crown, in heights of a layer [-].
+  static constexpr double most_layers = 1e6;
 
   /// `base`: height above the foot [L].
   Plot_crowns(const Tile_manifest& manifest,
@@ -42,7 +45,8 @@ public:
       m_trees(trees),
       m_sign(manifest.up().front() == '-' ? -1 : 1),
       m_base(base),
-      m_measures(trees.trees().size())
+      m_measures(trees.trees().size()),
+      m_is_too_high(m_measures.size(), false)
   {
     std::vector<std::size_t> order(m_measures.size());
     for (std::size_t p = 0; p < order.size(); ++p)
@@ -57,6 +61,9 @@ public:
   /// Returns the crowns of the trees of the plot.
   const std::vector<pcs::crowns::Crown_measures>& measures() const { return m_measures; }
 
+  /// Returns whether a tree of the plot has no crown because of a point too far above its foot.
+  const std::vector<bool>& is_too_high() const { return m_is_too_high; }
+
 private:
   void measure(const std::vector<std::size_t>& order, std::size_t first, std::size_t end)
   {
@@ -64,7 +71,7 @@ private:
     std::vector<std::size_t> place(m_measures.size(), end); // of each tree in `order`
     for (std::size_t w = first; w < end; ++w) {
       place[order[w]] = w;
-      layers.emplace_back(m_sign * m_trees.trees()[order[w]].foot[m_manifest.axis_up()] + m_base);
+      layers.emplace_back(base_of(order[w]));
     }
     for (std::size_t t = 0; t < m_tiles.results().size(); ++t) {
       const std::vector<std::int32_t>& tree_of = m_trees.trees_of_tile(t);
@@ -76,17 +83,24 @@ private:
           is_needed = is_needed || place_of[k] < end;
         }
       if (is_needed)
-        add_tile(t, place_of, first, end, layers);
+        add_tile(t, order, place_of, first, end, layers);
     }
     for (std::size_t w = first; w < end; ++w)
-      m_measures[order[w]] = layers[w - first].measures();
+      if (!m_is_too_high[order[w]])
+        m_measures[order[w]] = layers[w - first].measures();
+  }
+
+  double base_of(std::size_t tree) const
+  {
+    return m_sign * m_trees.trees()[tree].foot[m_manifest.axis_up()] + m_base;
   }
 
   void add_tile(std::size_t tile,
+                const std::vector<std::size_t>& order,
                 const std::vector<std::size_t>& place_of,
                 std::size_t first,
                 std::size_t end,
-                std::vector<pcs::crowns::Crown_layers>& layers) const
+                std::vector<pcs::crowns::Crown_layers>& layers)
   {
     const std::size_t axis_up = m_manifest.axis_up();
     pcs::IO::Point_reader reader(m_tiles.path_of(tile));
@@ -97,9 +111,13 @@ private:
         if (trees[i] < 0 || place_of[static_cast<std::size_t>(trees[i])] == end)
           continue;
         const auto& p = chunk.points()[i];
-        layers[place_of[static_cast<std::size_t>(trees[i])] - first].add(
-            horizontal(p, axis_up),
-            m_sign * p[static_cast<int>(axis_up)]);
+        const std::size_t place = place_of[static_cast<std::size_t>(trees[i])];
+        const std::size_t tree = order[place];
+        const double height = m_sign * p[static_cast<int>(axis_up)];
+        if (!(height - base_of(tree) <= most_layers * pcs::crowns::default_layer_height))
+          m_is_too_high[tree] = true;
+        if (!m_is_too_high[tree])
+          layers[place - first].add(horizontal(p, axis_up), height);
       }
     }
   }
@@ -109,6 +127,7 @@ private:
   const Plot_trees& m_trees;
   double m_sign, m_base;
   std::vector<pcs::crowns::Crown_measures> m_measures;
+  std::vector<bool> m_is_too_high; ///< by tree of the plot
 };
 
 /// Returns the outlines as GeoJSON, in the horizontal coordinates of the scan. A crown on one line

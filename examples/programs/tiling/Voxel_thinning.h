@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -189,7 +190,11 @@ private:
     read_core(path, [&](const Table& core) {
       const std::vector<std::uint64_t> index = indices_of(core);
       for (std::size_t i = 0; i < index.size(); ++i) {
-        const Voxel voxel = voxel_of(core.points()[i]);
+        const auto& p = core.points()[i];
+        for (const double x : {p.x(), p.y(), p.z()})
+          if (!(std::abs(x) <= 1e15 * m_voxel)) // was checked when the points were counted
+            throw pcs::IO_error(path, "was changed by someone else while it was read");
+        const Voxel voxel = voxel_of(p);
         const Candidate other = candidate(voxel, core.points()[i], index[i]);
         const auto [at, is_new] = voxels.emplace(voxel, other);
         if (!is_new && other < at->second)
