@@ -108,7 +108,7 @@ void declare(CLI::App& app, Options& options)
                  options.tolerance,
                  "largest distance of feet of one tree; default: a quarter of the breast height");
   app.add_option("--min-points", options.min_points, "trees with fewer points get no file")
-      ->check(CLI::NonNegativeNumber)
+      ->check(CLI::Range(std::int64_t(0), std::int64_t(1) << 53))
       ->capture_default_str();
   app.add_option("--open-files", options.open_files, "files that are open at the same time")
       ->check(CLI::Range(std::int64_t(2), std::int64_t(10000)))

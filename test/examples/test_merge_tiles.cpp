@@ -615,6 +615,11 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused)
   refuses(inputs + "--table t.csv --points tiles/" + name_of(0), "same file");
   refuses(inputs + "--table t.csv --points results/" + name_of(0), "same file");
   refuses(inputs + "--table t.csv --report t.csv", "same file");
+  refuses(inputs + "--table t.csv --report ./t.csv", "same file");
+  refuses(inputs + "--table t.csv --folder trees --points trees/tree_000000.ply", "--folder");
+  refuses(inputs + "--folder trees --min-points -1", "--min-points");
+  refuses(inputs + "--points p.las", "LAS");
+  refuses(inputs + "--points missing/p.ply", "missing/p.ply");
   Json damaged = manifest;
   damaged["tiles"][0].erase("core");
   write("tiles/damaged.json", damaged.dump());
