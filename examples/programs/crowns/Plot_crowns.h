@@ -74,15 +74,8 @@ private:
       layers.emplace_back(base_of(order[w]));
     }
     for (std::size_t t = 0; t < m_tiles.results().size(); ++t) {
-      const std::vector<std::int32_t>& tree_of = m_trees.trees_of_tile(t);
-      std::vector<std::size_t> place_of(tree_of.size(), end);
-      bool is_needed = false;
-      for (std::size_t k = 0; k < tree_of.size(); ++k)
-        if (tree_of[k] != Plot_trees::no_tree && m_tiles.parts(t)[k].number_of_points > 0) {
-          place_of[k] = place[static_cast<std::size_t>(tree_of[k])];
-          is_needed = is_needed || place_of[k] < end;
-        }
-      if (is_needed)
+      const std::vector<std::size_t> place_of = places_in_group(m_tiles, m_trees, t, place, end);
+      if (!place_of.empty())
         add_tile(t, order, place_of, first, end, layers);
     }
     for (std::size_t w = first; w < end; ++w)

@@ -199,6 +199,30 @@ private:
   bool m_has_schema = false;
 };
 
+/*!
+  Returns the places of the trees of a tile in a group of trees of the plot. Empty if no tree of the
+  group has points in the core of the tile.
+  \param place of each tree of the plot; `end` for trees outside the group
+*/
+inline std::vector<std::size_t> places_in_group(const Labelled_tiles& tiles,
+                                                const Plot_trees& trees,
+                                                std::size_t tile,
+                                                const std::vector<std::size_t>& place,
+                                                std::size_t end)
+{
+  const std::vector<std::int32_t>& tree_of = trees.trees_of_tile(tile);
+  std::vector<std::size_t> result(tree_of.size(), end);
+  bool is_needed = false;
+  for (std::size_t k = 0; k < tree_of.size(); ++k)
+    if (tree_of[k] != Plot_trees::no_tree && tiles.parts(tile)[k].number_of_points > 0) {
+      result[k] = place[static_cast<std::size_t>(tree_of[k])];
+      is_needed = is_needed || result[k] < end;
+    }
+  if (!is_needed)
+    result.clear();
+  return result;
+}
+
 } // namespace program
 
 #endif // PCS_EXAMPLES_PROGRAMS_TILING_LABELLED_TILES_H
