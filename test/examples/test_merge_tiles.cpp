@@ -557,6 +557,26 @@ BOOST_AUTO_TEST_CASE(crowns_begin_at_the_given_height)
   BOOST_TEST(std::stod(rows[4][14]) == pcs::crowns::measure_crown(of_tree, feet[3][2] + 6).volume);
 }
 
+BOOST_AUTO_TEST_CASE(a_point_far_above_a_tree_leaves_only_this_crown_out)
+{
+  write_results("results", 1);
+  const std::string file = path("results/" + name_of(0));
+  Table result = pcs::IO::read_points(file);
+  const auto& tree = result.property<std::int32_t>("tree");
+  const auto i = static_cast<std::size_t>(
+      std::find_if(tree.begin(), tree.end(), [](std::int32_t t) { return t >= 0; }) - tree.begin());
+  BOOST_TEST_REQUIRE(i < tree.size());
+  const Table::Point_3 p = result.points()[i];
+  result.points()[i] = Table::Point_3(p.x(), p.y(), 1e10);
+  pcs::IO::write_points(file, result);
+  BOOST_TEST_REQUIRE(run("--tiles tiles/tiles.json --results results --table t.csv") == 0, err);
+  BOOST_TEST(err.find("crowns are not measured: ") != std::string::npos, err);
+  std::size_t empty = 0;
+  for (const auto& row : table("t.csv"))
+    empty += row[13] == "0.0" || row[13] == "0";
+  BOOST_TEST(empty == 1u);
+}
+
 BOOST_AUTO_TEST_CASE(damaged_scans_that_were_left_out_are_named)
 {
   write_results("results", 1);
