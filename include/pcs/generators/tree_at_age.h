@@ -51,8 +51,10 @@ public:
       order.push_back(m_tree[bundle.root].branch);
     m_new_branch.assign(nodes.size(), npos);
     for (std::size_t i = 0; i < order.size(); ++i) {
-      grow(order[i], nodes[order[i]]);
-      order.insert(order.end(), children[order[i]].begin(), children[order[i]].end());
+      const std::size_t branch = order[i];
+      grow(branch, nodes[branch]);
+      for (const std::size_t child : children[branch])
+        order.push_back(child);
     }
     m_result[boost::graph_bundle].root = num_vertices(m_result) > 0 ? 0 : npos;
     old_nodes = std::move(m_old);
