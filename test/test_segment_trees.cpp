@@ -548,6 +548,55 @@ BOOST_AUTO_TEST_CASE(an_outlier_far_below_hides_no_tree)
   BOOST_TEST(trees.back() == pcs::npos);
 }
 
+BOOST_AUTO_TEST_CASE(stray_points_below_the_ground_hide_no_tree)
+{
+  Stand stand = three_trees(0.4);
+  stand.add_ground(0.4);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> side(-4, 6), depth(0.05, 3);
+  for (std::size_t i = stand.points.size() / 10; i > 0; --i) {
+    const double x = side(random), y = side(random);
+    stand.points.emplace_back(x, y, 0.4 * x - depth(random));
+    stand.truth.push_back(no_tree);
+  }
+  Labels trees;
+  const auto report = segment(stand.points, trees);
+  BOOST_TEST(report.trees.size() == 3u);
+  const auto [right, wrong] = shares(stand, trees, report);
+  BOOST_TEST(right > 0.9);
+  BOOST_TEST(wrong < 0.1);
+}
+
+BOOST_AUTO_TEST_CASE(shrubs_on_thin_ground_do_not_hide_the_feet_of_trees)
+{
+  Stand stand = three_trees(0.3);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> side(-4, 6), unit(0, 1);
+  std::normal_distribution<double> gauss;
+  for (int i = 0; i < 3000; ++i) {
+    const double x = side(random), y = side(random);
+    stand.points.emplace_back(x, y, 0.3 * x);
+    stand.truth.push_back(no_tree);
+  }
+  for (int shrub = 0; shrub < 120; ++shrub) {
+    const double x = side(random), y = side(random), radius = 0.2 + 0.4 * unit(random);
+    for (int i = 0; i < 400; ++i) {
+      Vector d(gauss(random), gauss(random), gauss(random));
+      d = d * (radius * std::cbrt(unit(random)) / std::sqrt(d.squared_length()));
+      stand.points.emplace_back(x + d.x(), y + d.y(), 0.3 * x + 0.8 * radius + d.z());
+      stand.truth.push_back(no_tree);
+    }
+  }
+  Labels trees;
+  const auto report = segment(stand.points, trees);
+  for (const Point& foot : stand.feet) {
+    double distance = 0;
+    nearest_tree(report, foot, distance);
+    BOOST_TEST(distance < 0.6);
+  }
+  BOOST_TEST(shares(stand, trees, report).first > 0.9);
+}
+
 BOOST_AUTO_TEST_CASE(bad_input_is_refused)
 {
   Labels trees;

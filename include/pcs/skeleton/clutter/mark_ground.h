@@ -8,6 +8,7 @@
 #include <pcs/internal/median.h>
 #include <pcs/skeleton/clutter/Terrain.h>
 #include <pcs/skeleton/clutter/is_single_sheet.h>
+#include <pcs/skeleton/clutter/leave_out_strays.h>
 #include <pcs/skeleton/graph/Neighbor_graph.h>
 #include <pcs/skeleton/layers/Stem_foot.h>
 #include <pcs/skeleton/model/Scan.h>
@@ -40,6 +41,7 @@ struct Ground_options
   double keep = 2;     ///< radius around the stem without search of plants, in stem widths [-]
   double beside = 1.5; ///< radius within which ground is thinner, in stem widths [-] ...
   double foot = 2;     ///< ... and its thickness there, in multiples of the noise [-]
+  double thickest = std::numeric_limits<double>::infinity(); ///< ground, in units of the input [L]
   double filled = 0.4; ///< least fraction of filled cells in a bin of plants [-]
   Terrain_options terrain;
   Sheet_options sheet;
@@ -204,7 +206,10 @@ public:
                 const std::vector<std::uint8_t>& is_used)
     : m_scan(scan), m_links(links), m_up(up), m_rules(rules), m_is_used(is_used)
   {
-    if (const auto terrain = find_terrain(scan, up, rules.terrain, is_used))
+    auto terrain = find_terrain(scan, up, rules.terrain, is_used);
+    if (!terrain)
+      terrain = find_terrain(scan, up, rules.terrain, leave_out_strays(scan, is_used));
+    if (terrain)
       find_on(*terrain);
   }
 
@@ -257,6 +262,8 @@ private:
   void find_on(Terrain terrain)
   {
     const double noise = terrain.noise(m_scan, m_is_used), thickness = m_rules.noise * noise;
+    if (thickness * m_scan.frame.unit > m_rules.thickest) // a surface of plants
+      return;
     std::vector<double> height(m_scan.size());
     std::vector<Index> layer;
     std::vector<std::uint8_t> is_standing = m_is_used;

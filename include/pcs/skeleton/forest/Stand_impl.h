@@ -10,6 +10,7 @@
 #include <pcs/internal/progress.h>
 #include <pcs/skeleton/Session.h>
 #include <pcs/skeleton/Session_options.h>
+#include <pcs/skeleton/clutter/leave_out_strays.h>
 #include <pcs/skeleton/forest/Sparse_ground.h>
 #include <pcs/skeleton/forest/Stand.h>
 #include <pcs/skeleton/forest/Stand_options.h>
@@ -19,6 +20,7 @@
 #include <pcs/skeleton/model/Scan_frame.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -40,22 +42,45 @@ struct Stand_state
   std::vector<float> spacing_of_input;
 };
 
-/// Returns the points of a scan that are left after the removal of clutter. If no ground was found,
-/// the points of a sparse ground are removed, too.
-template <class ConcurrencyTag>
-std::vector<std::uint8_t> points_above_ground(const Session<ConcurrencyTag>& session,
-                                              double breast_height)
+/// Points of a scan: those above the ground, and those that may show ground.
+struct Ground_view
 {
-  std::vector<std::uint8_t> is_used = session.used_points();
+  std::vector<std::uint8_t> is_above, may_be_ground;
+};
+
+/*!
+  Returns the points that are left after the removal of clutter. If no ground was found, the points
+  of a sparse ground are removed, too. Stray points may not show ground if more points lie on it
+  without them: stray points below the ground hide it.
+*/
+template <class ConcurrencyTag>
+Ground_view view_ground(const Session<ConcurrencyTag>& session, double breast_height)
+{
   const Scan& scan = session.scan();
+  const std::vector<std::uint8_t> all(scan.size(), 1);
+  Ground_view view{session.used_points(), all};
+  const bool has_ground = session.report().number_of_ground_points > 0;
+  const std::vector<std::uint8_t>& is_used = has_ground ? all : view.is_above;
   const Sparse_ground_options rules;
-  const Sparse_ground ground(scan, breast_height / scan.frame.unit, rules, is_used);
-  if (session.report().number_of_ground_points > 0 || !ground.is_found())
-    return is_used;
-  for (std::size_t i = 0; i < is_used.size(); ++i)
+  const double height = breast_height / scan.frame.unit;
+  const Sparse_ground of_all(scan, height, rules, is_used);
+  const Sparse_ground without_strays(scan, height, rules, leave_out_strays(scan, is_used));
+  const auto number_on = [&](const Sparse_ground& ground) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < scan.size(); ++i)
+      count += is_used[i] && std::abs(ground.height(scan.points[i])) <= ground.thickness();
+    return count;
+  };
+  const bool has_strays = number_on(without_strays) > number_on(of_all);
+  if (has_strays)
+    view.may_be_ground = leave_out_strays(scan, all);
+  const Sparse_ground& ground = has_strays ? without_strays : of_all;
+  if (has_ground || !ground.is_found())
+    return view;
+  for (std::size_t i = 0; i < scan.size(); ++i)
     if (ground.height(scan.points[i]) <= ground.thickness())
-      is_used[i] = 0;
-  return is_used;
+      view.is_above[i] = 0;
+  return view;
 }
 
 /// Detects the stems. Assigns points to trees only if `are_wanted(stand)` holds for these stems.
@@ -78,14 +103,16 @@ bool find_stand(const std::vector<Vec3>& input,
   options.leaf_removal = Leaf_removal::never;
   options.do_trace_paths = false;
   options.do_thin = false;
+  options.clutter.ground.thickest = rules.foot * hints.breast_height; // feet remain
   Session<ConcurrencyTag> session(thinned.points, {}, options);
   if (!session.find_paths(progress))
     return false;
   const Scan& scan = session.scan();
   stand.frame = scan.frame;
-  const std::vector<std::uint8_t> is_used = points_above_ground(session, hints.breast_height);
+  const Ground_view view = view_ground(session, hints.breast_height);
   Stem_detector<ConcurrencyTag> finder(scan,
-                                       is_used,
+                                       view.is_above,
+                                       view.may_be_ground,
                                        hints.breast_height / scan.frame.unit,
                                        options,
                                        rules);

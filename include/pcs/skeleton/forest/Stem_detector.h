@@ -123,11 +123,13 @@ class Stem_detector
 public:
   Stem_detector(const Scan& scan,
                 const std::vector<std::uint8_t>& is_used,
+                const std::vector<std::uint8_t>& may_be_ground,
                 double breast_height,
                 const Session_options& options,
                 const Stand_options& rules)
     : m_scan(scan),
       m_is_used(is_used),
+      m_may_be_ground(may_be_ground),
       m_breast_height(breast_height),
       m_options(options),
       m_rules(rules)
@@ -208,15 +210,15 @@ private:
     return is_running;
   }
 
-  /// Marks the points of large connected components of used and unused points: ground or trees.
+  /// Marks the points of large connected components of ground or trees.
   std::vector<std::uint8_t> solid_points() const
   {
-    std::vector<std::uint8_t> is_solid(m_scan.size(), 1);
+    std::vector<std::uint8_t> is_solid = m_may_be_ground;
     const Point_parts parts = connected_parts<ConcurrencyTag>(
         is_solid,
         neighbor_links<ConcurrencyTag>(m_scan, is_solid, m_options.axes.links));
     for (std::size_t i = 0; i < is_solid.size(); ++i)
-      is_solid[i] = parts.size[parts.part[i]] >= m_rules.solid_part;
+      is_solid[i] = is_solid[i] && parts.size[parts.part[i]] >= m_rules.solid_part;
     return is_solid;
   }
 
@@ -412,6 +414,7 @@ private:
 
   const Scan& m_scan;
   const std::vector<std::uint8_t>& m_is_used;
+  const std::vector<std::uint8_t>& m_may_be_ground;
   double m_breast_height; ///< in the unit of the scan
   const Session_options& m_options;
   const Stand_options& m_rules;
