@@ -265,6 +265,37 @@ BOOST_AUTO_TEST_CASE(a_stretched_strip_narrows_like_its_material)
     }
 }
 
+BOOST_AUTO_TEST_CASE(springs_through_the_interior_follow_the_material)
+{
+  // A closed bar, stretched by 1.5: its sides narrow by 1.5^-nu.
+  const pcs_test::Bar_edit bar(12, 48);
+  const auto handles = pcs_test::two_handles(
+      bar.points,
+      [](const Vec3& p) { return p.z() < .2; },
+      [](const Vec3& p) { return p.z() > 3.8; },
+      pcs::translation(Vec3(0, 0, .5 * 3.6)));
+  const std::pair<double, double> materials[] = {{0, 1.0}, {0.5, 0.82}, {-0.5, 1.22}};
+  for (const auto& [poisson_ratio, expected] : materials)
+    for (const long long samples : {1000000, 1000}) {
+      Options options;
+      options.number_of_samples = samples;
+      options.poisson_ratio = poisson_ratio;
+      const auto result = deform(bar.points, handles, options);
+      BOOST_TEST(result.report.number_of_interior_links > 0u);
+      Vec3 low = Vec3::Constant(1e9), high = -low;
+      for (std::size_t i = 0; i < bar.points.size(); ++i)
+        if (std::abs(bar.points[i].z() - 2) < .1) {
+          low = low.cwiseMin(result.points[i]);
+          high = high.cwiseMax(result.points[i]);
+        }
+      const double found = (high - low).head<2>().mean();
+      BOOST_TEST_MESSAGE("nu " << poisson_ratio << ", " << samples << " samples: width ratio "
+                               << found);
+      BOOST_TEST_CONTEXT("nu " << poisson_ratio << ", " << samples << " samples")
+      BOOST_TEST(std::abs(found - expected) < 0.05);
+    }
+}
+
 BOOST_AUTO_TEST_CASE(a_stiffer_body_bends_less)
 {
   // A dragged plate: a larger stiffness reduces bending and increases stretch.

@@ -44,6 +44,9 @@ struct Elastic_state
   /// Growth of edges between scaled handles, `A_i`; empty if no handle is scaled. [-]
   const std::vector<Eigen::Matrix3d>& growth;
   const Link_targets& link_targets;
+  /// Transverse stretch of the material, of which `target` was computed; empty if Poisson's ratio is
+  /// zero. Links through the interior change their lengths with it. [-]
+  const std::vector<Eigen::Matrix3d>& stretch;
 
   /// Weight of the frame in `deformation_gradient()`, relative to the spread of the edges. The
   /// frame determines the gradient along the surface normal, where there are no edges. [-]
@@ -85,7 +88,7 @@ struct Elastic_state
   {
     if (links_turn) {
       const Vec3 edge = network.rest[i] - network.rest[j];
-      const Vec3 turned = 0.5 * (frame[i] * edge + frame[j] * edge);
+      const Vec3 turned = 0.5 * (target[i] * edge + target[j] * edge);
       return link_targets.shift.empty() ? turned : Vec3(turned + link_targets.shift[e]);
     }
     const Vec3 present = position[i] - position[j];
@@ -217,7 +220,11 @@ private:
   {
     if (!link_targets.length.empty() && link_targets.length[e] >= 0)
       return link_targets.length[e];
-    return grown_link(i, j).norm();
+    if (stretch.empty())
+      return grown_link(i, j).norm();
+    const Vec3 edge = network.rest[i] - network.rest[j];
+    const Vec3 stretched = 0.5 * (stretch[i] * edge + stretch[j] * edge);
+    return growth.empty() ? stretched.norm() : (0.5 * (growth[i] + growth[j]) * stretched).norm();
   }
 };
 

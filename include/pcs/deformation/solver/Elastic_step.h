@@ -60,7 +60,8 @@ public:
             m_frame,
             is_stretched() ? m_target : m_frame,
             m_scales.growth(),
-            m_loads.links()};
+            m_loads.links(),
+            m_target_stretch};
   }
 
   /// Factorises for the given constraints. The network must outlive its use here. Returns `false`
@@ -98,6 +99,7 @@ public:
     m_poisson_ratio = options.poisson_ratio;
     if (!is_further)
       m_stretch.assign(is_stretched() ? m_network->size() : 0, Eigen::Matrix3d::Identity());
+    m_target_stretch = m_stretch;
     m_field_solver(options.rotation_field,
                    m_factors.field(),
                    m_network->surface,
@@ -364,8 +366,10 @@ private:
 
   void update_frames()
   {
-    if (is_stretched())
+    if (is_stretched()) {
       m_target.resize(m_network->size());
+      m_target_stretch = m_stretch; // which the next measurement changes while links are measured
+    }
     pcs::internal::for_each_index<ConcurrencyTag>(
         m_network->size(),
         [&](std::size_t i) {
@@ -397,7 +401,7 @@ private:
   Target_loads m_loads;
   double m_poisson_ratio = 0;
   std::vector<Quaternion> m_field, m_rotation, m_kept_rotation;
-  std::vector<Eigen::Matrix3d> m_frame, m_kept_frame, m_stretch, m_target;
+  std::vector<Eigen::Matrix3d> m_frame, m_kept_frame, m_stretch, m_target, m_target_stretch;
   std::vector<Vec3> m_position, m_kept_position, m_ungrown, m_kept_directing, m_rhs, m_work;
   std::vector<Vec3> m_deviation, m_kept_deviation; ///< of the best local rotations from the field
   std::vector<double> m_energies;                  ///< by block of nodes
