@@ -86,6 +86,52 @@ BOOST_AUTO_TEST_CASE(without_handle_there_is_nothing_to_do)
   BOOST_TEST(session.number_of_samples() == 150u);
 }
 
+BOOST_AUTO_TEST_CASE(the_number_of_points_determines_the_default_number_of_samples)
+{
+  const auto deformed = [](const Points& rest, const auto& np, pcs::Deformation_report& report) {
+    Points points = rest;
+    const auto low = pcs_test::select(rest, [](const Vec3& p) { return p.x() < 1.5; });
+    const auto high = pcs_test::select(rest, [](const Vec3& p) { return p.x() > 98.5; });
+    report = pcs::deform_point_set(points,
+                                   low,
+                                   high,
+                                   pcs::rotation(Vec3(1, 0, 1), 1.0, Vec3(50, 0, 20)),
+                                   np);
+    return points;
+  };
+  const auto by_default = pcs::parameters::do_preserve_volume(true);
+  pcs::Deformation_report report;
+
+  Points points = pcs_test::plate(100, 197, 1); // 101 x 198 = 19,998 points
+  points.push_back(Vec3(50.5, .5, 0));
+  points.push_back(Vec3(50.5, 1.5, 0));
+  points.push_back(points.back()); // a duplicate does not count
+  BOOST_TEST_REQUIRE(points.size() == 20001u);
+  const Points whole = deformed(points, by_default, report);
+  BOOST_TEST(report.number_of_samples == 20000u);
+  BOOST_TEST(report.sample_choice == pcs::Sample_choice::all_points);
+  BOOST_TEST((deformed(points, parameters(1000000), report) == whole));
+  BOOST_TEST(report.sample_choice == pcs::Sample_choice::requested);
+
+  points.push_back(Vec3(50.5, 2.5, 0));
+  const Points sampled = deformed(points, by_default, report);
+  BOOST_TEST(report.number_of_samples == 2000u);
+  BOOST_TEST(report.sample_choice == pcs::Sample_choice::default_number);
+  BOOST_TEST((deformed(points, parameters(2000), report) == sampled));
+
+  // the published variants blend samples
+  const Points small = pcs_test::plate(100, 29, 1);
+  const auto hops = by_default.sample_search(pcs::Sample_search::breadth_first_hops);
+  const auto weights = by_default.sample_weights(pcs::Sample_weights::inverse_square);
+  deformed(small, hops, report);
+  BOOST_TEST(report.number_of_samples == 2000u);
+  BOOST_TEST(report.sample_choice == pcs::Sample_choice::default_number);
+  deformed(small, weights, report);
+  BOOST_TEST(report.number_of_samples == 2000u);
+  deformed(small, by_default, report);
+  BOOST_TEST(report.number_of_samples == small.size());
+}
+
 BOOST_AUTO_TEST_CASE(handles_are_numbered_from_0_and_numbers_are_not_used_again)
 {
   Bar_session s(150);
@@ -922,6 +968,33 @@ BOOST_AUTO_TEST_CASE(other_points_follow_the_points_around_them)
     session.apply(again);
     BOOST_TEST((again == others));
   }
+}
+
+BOOST_AUTO_TEST_CASE(other_points_move_continuously_if_all_points_are_samples)
+{
+  const Points rest = pcs_test::plate(40, 20, 1);
+  Points points = rest;
+  Session session(points, parameters(1000000));
+  session.add_handle(pcs_test::select(rest, [](const Vec3& p) { return p.x() < 2.5; }));
+  const auto h =
+      session.add_handle(pcs_test::select(rest, [](const Vec3& p) { return p.x() > 37.5; }));
+  session.set_transformation(h, pcs::rotation(Vec3(0, 1, 0), 2.0, Vec3(20, 10, 10)));
+  session.deform();
+  constexpr double step = 1e-3;
+  Points line, before;
+  for (double x = 10.5; x < 30; x += step)
+    line.emplace_back(x, 9.3 + .01 * x, 0);
+  before = line;
+  session.apply(line);
+  double largest = 0;
+  for (std::size_t i = 1; i < line.size(); ++i)
+    largest =
+        std::max(largest, (line[i] - line[i - 1]).norm() / (before[i] - before[i - 1]).norm());
+  BOOST_TEST_MESSAGE("largest stretch along the line " << largest);
+  BOOST_TEST(largest < 2); // with the map of the nearest point alone, the line jumps: 50 and more
+  Points again = rest;
+  session.apply(again);
+  BOOST_TEST(pcs_test::largest_distance(again, points) < 1e-9);
 }
 
 BOOST_AUTO_TEST_CASE(points_are_carried_before_the_handles_have_moved)

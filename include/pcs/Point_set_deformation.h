@@ -113,7 +113,10 @@ public:
       \np{number_of_samples} number of samples for which the non-linear problem is solved, at most
         the number of points [count]
         \nptype integer, `> 0`
-        \npdefault `default_number_of_samples`
+        \npdefault all points of a cloud with at most `largest_unsampled_size` points at different
+            positions (20,000), otherwise `default_number_of_samples` (2000). The variants
+            `Sample_search::breadth_first_hops` and `Sample_weights::inverse_square` blend samples,
+            so their default is always 2000
       \np{number_of_neighbors} nearest neighbours to which a point is linked [count]
         \nptype integer, 2 to 60
         \npdefault `default_number_of_neighbors`
@@ -373,7 +376,7 @@ public:
     deforms clouds that do not fit into memory: a subset is deformed first, then all points, chunk
     by chunk. A point moves rigidly if its nearest point of this object belongs to a handle, and
     remains unchanged if that point did not move. Otherwise the maps of nearby samples are blended
-    as for points of this object. Points of this object obtain the same result up to rounding with
+    as for points of this object; if all points are samples, their maps are interpolated. Points of this object obtain the same result up to rounding with
     `Sample_search::regions`, unless a shape was accepted. O(n log n) once per rest shape, then
     O(log n) per point.
 

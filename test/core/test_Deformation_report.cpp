@@ -38,11 +38,12 @@ BOOST_AUTO_TEST_CASE(a_report_prints_its_counts)
   report.status = pcs::Status::converged;
   report.number_of_points = 12345;
   report.number_of_samples = 678;
+  report.sample_choice = pcs::Sample_choice::all_points;
   report.number_of_unreached_points = 91;
   report.energy = 0.25;
   std::ostringstream out;
   out << report;
-  for (const char* word : {"converged", "12345 points", "678 samples", "91 points", "0.25"})
+  for (const char* word : {"converged", "12345 points", "678 samples (all points)", "91 points", "0.25"})
     BOOST_TEST(out.str().find(word) != std::string::npos, out.str() << " lacks " << word);
 }
 

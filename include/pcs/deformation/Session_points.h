@@ -113,7 +113,7 @@ Affine_map map_near_site(const Session_state<Tag>& s, std::size_t site, const Ve
 {
   if (s.sites[site] == outlier_site)
     return s.outlier_maps.of_site(s.body, site);
-  return s.body.is_sampled ? s.carrier->map_at(local, site, s.maps) : s.maps[site];
+  return s.carrier->map_at(local, site, s.maps);
 }
 
 template <class Tag>

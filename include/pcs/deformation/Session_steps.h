@@ -46,6 +46,7 @@ void describe_body(Session_state<Tag>& s)
   s.report.number_of_points = body.number_of_points();
   s.report.number_of_duplicates = body.number_of_points() - body.number_of_sites();
   s.report.number_of_samples = body.network.size();
+  s.report.sample_choice = body.sample_choice;
   s.report.number_of_interior_links = body.network.links.neighbor.size() / 2;
   s.report.number_of_components = body.number_of_components();
   s.report.number_of_short_cuts = body.number_of_short_cuts;

@@ -161,11 +161,12 @@ Sampling_options read_sampling_options(const NamedParameters& np, const std::str
       [&](auto tag, const char* name, std::size_t lowest, std::size_t highest, std::size_t& value) {
         internal::read_count(np, tag, caller, name, lowest, highest, value);
       };
-  count(tags::number_of_samples,
-        "number_of_samples",
-        1,
-        std::numeric_limits<std::uint32_t>::max(),
-        options.number_of_samples);
+  if constexpr (pcs::internal::is_given_v<NamedParameters, tags::number_of_samples_t>)
+    count(tags::number_of_samples,
+          "number_of_samples",
+          1,
+          std::numeric_limits<std::uint32_t>::max(),
+          options.number_of_samples);
   count(tags::number_of_neighbors,
         "number_of_neighbors",
         2,

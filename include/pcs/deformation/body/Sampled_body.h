@@ -58,6 +58,7 @@ struct Sampled_body
   bool has_fragments = false;                  ///< whether there are sites without a sample
   std::vector<neighborhood::Outlier> outliers; ///< sites attached to one other site
   bool is_sampled = true;                      ///< whether there are fewer samples than sites
+  Sample_choice sample_choice = Sample_choice::requested; ///< why there are that many samples
 
   std::size_t number_of_points() const { return input_of_place.size(); }
   std::size_t number_of_sites() const { return component_of_site.size(); }
@@ -107,6 +108,8 @@ private:
   void find_components(const Graph& graph);
 
   // ---- samples
+  /// Determines the number of samples if none is requested.
+  void choose_number_of_samples(std::size_t number_of_sites);
   bool sample(const std::vector<Vec3>& sites, Graph graph, pcs::internal::Progress& progress);
   /// Chooses samples among the sites that are not outliers. A sample at an outlier would move only
   /// the outlier.

@@ -171,6 +171,19 @@ void Sampled_body<ConcurrencyTag>::find_components(const neighborhood::Proximity
 }
 
 template <class ConcurrencyTag>
+void Sampled_body<ConcurrencyTag>::choose_number_of_samples(std::size_t number_of_sites)
+{
+  if (options.number_of_samples != automatic_number_of_samples)
+    return;
+  const bool is_published = options.sample_search == Sample_search::breadth_first_hops ||
+                            options.sample_weights == Sample_weights::inverse_square;
+  options.number_of_samples = is_published ? std::min(number_of_sites, default_number_of_samples)
+                                           : number_of_samples_by_default(number_of_sites);
+  sample_choice = options.number_of_samples == number_of_sites ? Sample_choice::all_points
+                                                               : Sample_choice::default_number;
+}
+
+template <class ConcurrencyTag>
 void Sampled_body<ConcurrencyTag>::choose_samples(const std::vector<Vec3>& sites)
 {
   if (outliers.empty() || options.number_of_samples >= sites.size())
@@ -277,6 +290,7 @@ bool Sampled_body<ConcurrencyTag>::sample(const std::vector<Vec3>& sites,
                                           Graph graph,
                                           pcs::internal::Progress& progress)
 {
+  choose_number_of_samples(sites.size());
   choose_samples(sites);
   is_sampled = site_of_sample.size() < sites.size();
   if (!is_sampled)

@@ -27,8 +27,13 @@ namespace deformation {
   around the region of the site nearest to the point. The weights equal those of a point of the
   session at the same position.
 
-  The object is built once per rest shape, and needs 40 bytes per site. `sample_of_site` must
-  outlive it. Const functions may run concurrently. O(log n) per point for n sites.
+  If all sites are samples, every point of the session has the map of its own sample. The weights are
+  then divided by the squared distances: the map of a sample is interpolated at its position, and the
+  blended map is continuous.
+
+  The object is built once per rest shape, and needs 40 bytes per site. `sample_of_site` and
+  `sample_graph` must outlive it. Const functions may run concurrently. O(log n) per point for n
+  sites.
 */
 class Point_carrier
 {
@@ -42,11 +47,13 @@ public:
     : m_sites(std::move(sites)),
       m_samples(std::move(samples)),
       m_sample_of_site(sample_of_site),
-      m_rings(internal::sample_rings<CGAL::Sequential_tag>(sample_graph)),
+      m_sample_graph(sample_graph),
       m_k(number_of_sample_neighbors),
       m_weights(weights),
       m_nearest(m_sites)
   {
+    if (m_samples.size() < m_sites.size()) // otherwise the rings would need most of the memory
+      m_rings = internal::sample_rings<CGAL::Sequential_tag>(sample_graph);
   }
 
   Point_carrier(const Point_carrier&) = delete;
@@ -66,8 +73,15 @@ public:
   {
     thread_local std::vector<internal::Sample_candidate> nearest;
     thread_local std::vector<double> weight;
-    internal::nearest_samples(point, m_samples, m_rings[m_sample_of_site[site]], m_k, nearest);
-    internal::sample_weights(nearest, m_weights, m_k, weight);
+    if (m_rings.empty()) {
+      find_near_sites(point, site, nearest);
+      if (!(nearest.front().distance > 0))
+        return maps[nearest.front().sample];
+      interpolation_weights(nearest, m_k, weight);
+    } else {
+      internal::nearest_samples(point, m_samples, m_rings[m_sample_of_site[site]], m_k, nearest);
+      internal::sample_weights(nearest, m_weights, m_k, weight);
+    }
     Affine_map result{};
     for (std::size_t b = 0; b < weight.size(); ++b) {
       const Affine_map& map = maps[nearest[b].sample];
@@ -80,8 +94,47 @@ public:
   }
 
 private:
+  /// Finds the sites nearest to `point` among `site` and the two rings of sites linked to it.
+  void find_near_sites(const Vec3& point,
+                       std::size_t site,
+                       std::vector<internal::Sample_candidate>& nearest) const
+  {
+    thread_local std::vector<std::uint32_t> ring;
+    ring.assign(1, static_cast<std::uint32_t>(site));
+    for (auto t = m_sample_graph.begin(site); t != m_sample_graph.end(site); ++t) {
+      ring.push_back(*t);
+      ring.insert(ring.end(), m_sample_graph.begin(*t), m_sample_graph.end(*t));
+    }
+    std::sort(ring.begin(), ring.end());
+    ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
+    // outliers have one link, and their maps are those of the site to which they are attached
+    const auto is_other_outlier = [&](std::uint32_t s) {
+      return s != site && m_sample_graph.degree(s) == 1;
+    };
+    ring.erase(std::remove_if(ring.begin(), ring.end(), is_other_outlier), ring.end());
+    internal::nearest_samples(point, m_samples, ring, m_k, nearest);
+  }
+
+  /// Returns compact weights divided by the squared distances, which are positive.
+  static void interpolation_weights(const std::vector<internal::Sample_candidate>& nearest,
+                                    std::size_t k,
+                                    std::vector<double>& weight)
+  {
+    internal::sample_weights(nearest, Sample_weights::compact, k, weight);
+    const double least = nearest.front().distance;
+    double sum = 0;
+    for (std::size_t b = 0; b < weight.size(); ++b) {
+      const double ratio = least / nearest[b].distance;
+      weight[b] *= ratio * ratio;
+      sum += weight[b];
+    }
+    for (double& w : weight)
+      w /= sum;
+  }
+
   std::vector<Vec3> m_sites, m_samples;
   const std::vector<std::uint32_t>& m_sample_of_site;
+  const Weighted_graph& m_sample_graph;
   std::vector<std::vector<std::uint32_t>> m_rings;
   std::size_t m_k;
   Sample_weights m_weights;
