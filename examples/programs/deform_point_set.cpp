@@ -28,6 +28,7 @@
 #include <CLI/CLI.hpp>
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <iostream>
@@ -42,6 +43,7 @@ namespace program {
 /// Deforms the points of the table, and its normals if they are valid.
 void deform_table(pcs::IO::Point_table& table,
                   const Edit& edit,
+                  const Edit* region_of_interest,
                   const Options& options,
                   const std::optional<Splat_properties>& splats,
                   Run_report& run)
@@ -53,6 +55,13 @@ void deform_table(pcs::IO::Point_table& table,
   for (const std::uint32_t h : handles)
     if (h != no_handle)
       ++run.points_of_handles[h];
+
+  const Region region(region_of_interest, table);
+  const std::vector<char> is_inside = region.in(table, 0, handles, &edit);
+  run.number_of_inside_points = region.is_given()
+                                    ? std::count(is_inside.begin(), is_inside.end(), char(1))
+                                    : static_cast<std::int64_t>(table.number_of_points());
+  region.check(table.number_of_points(), static_cast<std::uint64_t>(run.number_of_inside_points));
 
   Normal_vectors normals;
   if (table.has_normals()) {
@@ -75,10 +84,12 @@ void deform_table(pcs::IO::Point_table& table,
                                  table.points(),
                                  do_normals ? &normals : nullptr,
                                  splats ? &gradients : nullptr,
-                                 ""},
+                                 "",
+                                 is_inside},
                                 options,
                                 progress,
                                 [](const auto&) {});
+  run.samples_reason = reason_of(run.deformation);
   if (do_normals)
     store_normals(table, normals);
   if (splats) {
@@ -88,7 +99,10 @@ void deform_table(pcs::IO::Point_table& table,
   check_range(edit, table, 0);
 }
 
-void run_in_memory(const Options& options, std::optional<Edit> edit, Run_report& run)
+void run_in_memory(const Options& options,
+                   std::optional<Edit> edit,
+                   const Edit* region,
+                   Run_report& run)
 {
   const Stopwatch reading;
   std::shared_ptr<pcs::IO::Mesh_faces> faces;
@@ -106,7 +120,7 @@ void run_in_memory(const Options& options, std::optional<Edit> edit, Run_report&
   if (!edit)
     edit = default_edit(table.points());
   run.edit = edit->source;
-  deform_table(table, *edit, options, splats, run);
+  deform_table(table, *edit, region, options, splats, run);
 
   const Stopwatch writing;
   pcs::IO::Write_options write_options;
@@ -124,20 +138,25 @@ void run(const Options& options)
   std::optional<Edit> edit;
   if (!options.is_default_edit)
     edit = read_edit(options.edit);
+  std::optional<Edit> region;
+  if (!options.region.empty())
+    region = read_region(options.region);
+  const Edit* region_or_null = region ? &*region : nullptr;
   std::optional<Report_file> report_file;
   if (!options.report.empty())
     report_file.emplace(options.report);
 
   try {
     if (options.is_streamed)
-      Streamed_deformation(options, run).run(std::move(edit));
+      Streamed_deformation(options, region_or_null, run).run(std::move(edit));
     else
-      run_in_memory(options, std::move(edit), run);
+      run_in_memory(options, std::move(edit), region_or_null, run);
   } catch (const pcs::Invalid_input& e) {
     throw pcs::IO_error(options.input, e.what());
   }
   warn_of_unreached_points(run);
   warn_of_invalid_splats(run);
+  warn_of_unused_variants(run, options.model);
   for (const std::string& warning : run.warnings)
     std::cerr << "deform_point_set: warning: " << options.input << ": " << warning << '\n';
   run.seconds_total = total.seconds();

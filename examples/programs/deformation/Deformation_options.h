@@ -5,6 +5,7 @@
 #ifndef PCS_EXAMPLES_PROGRAMS_DEFORMATION_DEFORMATION_OPTIONS_H
 #define PCS_EXAMPLES_PROGRAMS_DEFORMATION_DEFORMATION_OPTIONS_H
 
+#include "deformation/Model_options.h"
 #include <pcs/core/errors.h>
 #include <pcs/deform_point_set.h>
 
@@ -24,8 +25,10 @@ namespace program {
 struct Options
 {
   std::string input, edit, output, report;
+  std::string region; // file; empty: all points may move
+  Model_options model;
   // signed, because CLI11 would convert -5 to a large unsigned number
-  std::int64_t number_of_samples = pcs::default_number_of_samples;
+  std::int64_t number_of_samples = 0; // not given
   std::int64_t number_of_neighbors = pcs::default_number_of_neighbors;
   std::int64_t number_of_kept_points = 1000000; // with --stream
   std::int64_t chunk_size = 262144;             // with --stream [count]
@@ -49,6 +52,9 @@ rotation and scale; without it that is the centroid of the selected points. The 
 must be made of a rotation, one scale and a translation. Bounds are inclusive. Targets are the
 new positions of the points in the order of indices; they exclude --stream.
 
+The region is a JSON file with a selection like those of handles, {"select": {...}}. All other
+points keep every bit. The points of handles must be in the region.
+
 Files: PLY, LAS (LAZ if built with LASzip), OFF, OBJ, or text (xyz, txt, csv, asc, pts, pwn). The
 input may also be PCD, PTX, or compressed by gzip (.gz) if built with zlib. Order and properties of
 the points are kept, normals nx, ny, nz are rotated. PLY is written in binary, with
@@ -64,7 +70,7 @@ With --stream the input may be larger than memory. It is read twice (text: three
 LAS output: once more). At most --stream-points points, spread over the file, are kept and
 deformed; the other points follow them, and points of handles move exactly. A file with no
 more points gives the same output, byte for byte, as without --stream; otherwise each
-kept point is linked to at least 10 neighbours. For example:
+kept point is linked to at least 10 neighbours, and --samples is 2000 by default. For example:
   generate_points large.ply 50000000 --float
   deform_point_set --stream --input large.ply --default-edit --output out.ply
 
@@ -85,15 +91,22 @@ inline void declare(CLI::App& app, Options& options)
   app.add_option("--output", options.output, "deformed points; may be the input")->required();
   app.add_option("--samples",
                  options.number_of_samples,
-                 "number of samples on which the deformation is solved")
-      ->check(CLI::Range(std::int64_t(1), std::int64_t(std::numeric_limits<std::uint32_t>::max())))
-      ->capture_default_str();
+                 "number of samples on which the deformation is solved; by default all points of a "
+                 "cloud with at most " +
+                     std::to_string(pcs::largest_unsampled_size) + " points, otherwise " +
+                     std::to_string(pcs::default_number_of_samples) +
+                     "; with --as-published weights or hops always the latter")
+      ->check(CLI::Range(std::int64_t(1), std::int64_t(std::numeric_limits<std::uint32_t>::max())));
   app.add_option("--neighbors",
                  options.number_of_neighbors,
                  "number of nearest neighbours of the neighbour graph")
       ->check(
           CLI::Range(std::int64_t(2), std::int64_t(pcs::neighborhood::maximal_number_of_neighbors)))
       ->capture_default_str();
+  app.add_option("--region",
+                 options.region,
+                 "only the points that this JSON file selects may move, see below");
+  declare(app, options.model);
   CLI::Option* stream =
       app.add_flag("--stream", options.is_streamed, "process files larger than memory; see below");
   app.add_option("--stream-points",
@@ -120,10 +133,12 @@ inline void check(const Options& options)
     throw pcs::Invalid_input("expected exactly one of --edit and --default-edit");
   // The input may be the output; other equal paths would overwrite a file that is needed.
   using Named_path = std::pair<const char*, const std::string*>;
-  const std::array<std::pair<Named_path, Named_path>, 4> pairs = {
+  const std::array<std::pair<Named_path, Named_path>, 6> pairs = {
       {{{"--output", &options.output}, {"--edit", &options.edit}},
+       {{"--output", &options.output}, {"--region", &options.region}},
        {{"--report", &options.report}, {"--input", &options.input}},
        {{"--report", &options.report}, {"--edit", &options.edit}},
+       {{"--report", &options.report}, {"--region", &options.region}},
        {{"--report", &options.report}, {"--output", &options.output}}}};
   for (const auto& [a, b] : pairs) {
     std::error_code error;

@@ -52,8 +52,10 @@ struct Run_report
   pcs::Deformation_report deformation;
   std::string edit;
   std::uint64_t number_of_points = 0; ///< points of the input; `deformation` counts those in memory
-  std::uint64_t number_of_faces = 0;  ///< faces of the output
+  std::int64_t number_of_inside_points = 0; ///< points that may move
+  std::uint64_t number_of_faces = 0;        ///< faces of the output
   std::int64_t number_of_neighbors = 0;
+  std::string samples_reason;         ///< why there are that many samples
   std::uint64_t number_of_chunks = 0; ///< 0 unless streamed
   std::vector<std::uint64_t> points_of_handles;
   std::string normals = "none";        ///< none, deformed, or unchanged
@@ -74,6 +76,42 @@ inline void warn_of_unreached_points(Run_report& run)
                            "--neighbors connect parts that touch");
 }
 
+/// Says why a run has its number of samples, if that did not depend on the points that are kept.
+inline std::string reason_of(const pcs::Deformation_report& report)
+{
+  const std::string limit = std::to_string(pcs::largest_unsampled_size);
+  switch (report.sample_choice) {
+  case pcs::Sample_choice::all_points:
+    return "all points, there are at most " + limit;
+  case pcs::Sample_choice::default_number:
+    return report.number_of_points - report.number_of_duplicates > pcs::largest_unsampled_size
+               ? "default for more than " + limit + " points"
+               : "default of --as-published weights and hops";
+  default:
+    return "--samples";
+  }
+}
+
+/// Returns the names of the published variants that are used.
+inline std::vector<std::string> published_variants(const Model_options& model)
+{
+  std::vector<std::string> names;
+  for (const char* name : {"weights", "hops", "rotations"})
+    if (model.is_published(name))
+      names.emplace_back(name);
+  return names;
+}
+
+/// Adds a warning if published variants of the blending have no effect.
+inline void warn_of_unused_variants(Run_report& run, const Model_options& model)
+{
+  const pcs::Deformation_report& r = run.deformation;
+  const bool is_blending_published = model.is_published("weights") || model.is_published("hops");
+  if (is_blending_published && r.number_of_samples + r.number_of_duplicates >= r.number_of_points)
+    run.warnings.push_back("--as-published weights and hops have no effect, because all points are "
+                           "samples; choose fewer --samples");
+}
+
 inline nlohmann::ordered_json to_json(const Run_report& run, const Options& options)
 {
   const pcs::Deformation_report& r = run.deformation;
@@ -85,6 +123,7 @@ inline nlohmann::ordered_json to_json(const Run_report& run, const Options& opti
   json["output"] = options.output;
   json["status"] = pcs::to_string(r.status);
   json["points"] = run.number_of_points;
+  json["points_of_region"] = run.number_of_inside_points;
   json["faces"] = run.number_of_faces;
   json["streamed"] = options.is_streamed;
   if (options.is_streamed) {
@@ -98,7 +137,12 @@ inline nlohmann::ordered_json to_json(const Run_report& run, const Options& opti
   json["unreached_points"] = r.number_of_unreached_points;
   json["points_of_handles"] = run.points_of_handles;
   json["neighbors"] = run.number_of_neighbors;
+  json["material"] = {{"poisson_ratio", options.model.poisson_ratio},
+                      {"stiffness", options.model.stiffness},
+                      {"keeps_volume", !options.model.is_volume_ignored}};
+  json["as_published"] = published_variants(options.model);
   json["samples"] = r.number_of_samples;
+  json["samples_reason"] = run.samples_reason;
   json["interior_links"] = r.number_of_interior_links;
   json["iterations"] = r.number_of_iterations;
   json["initial_energy"] = r.initial_energy;
@@ -139,7 +183,7 @@ inline void print_summary(std::ostream& out, const Run_report& run, const Option
     out << "faces       " << run.number_of_faces << '\n';
   if (run.degree_of_splats)
     out << "splats      of degree " << *run.degree_of_splats << ": shapes and colours follow\n";
-  out << "samples     " << r.number_of_samples << '\n'
+  out << "samples     " << r.number_of_samples << " (" << run.samples_reason << ")\n"
       << "iterations  " << r.number_of_iterations << '\n'
       << "status      " << r.status << '\n';
   seconds("seconds     read", run.seconds_read);

@@ -44,8 +44,9 @@ namespace program {
 class Streamed_deformation
 {
 public:
-  Streamed_deformation(const Options& options, Run_report& run)
-    : m_options(options), m_run(run), m_progress(!options.is_quiet)
+  /// \param region the region of interest, or null; must outlive this object
+  Streamed_deformation(const Options& options, const Edit* region, Run_report& run)
+    : m_options(options), m_run(run), m_progress(!options.is_quiet), m_region_edit(region)
   {
   }
 
@@ -66,8 +67,11 @@ public:
       m_kept_gradients.assign(m_kept.numbers.size(), Eigen::Matrix3d::Identity());
     const bool has_all = m_kept.numbers.size() == m_run.number_of_points;
     Options options = m_options;
-    if (!has_all)
+    if (!has_all) {
       options.number_of_neighbors = std::max(least_neighbors, options.number_of_neighbors);
+      if (options.number_of_samples == 0) // points that are not kept are blended more smoothly
+        options.number_of_samples = pcs::default_number_of_samples;
+    }
     m_run.number_of_neighbors = options.number_of_neighbors;
     m_run.deformation =
         run_session({*m_edit,
@@ -76,10 +80,14 @@ public:
                      m_kept.table.points(),
                      do_normals() ? &m_kept.normals : nullptr,
                      m_splats ? &m_kept_gradients : nullptr,
-                     has_all ? "" : " (numbers count the points that --stream keeps)"},
+                     has_all ? "" : " (numbers count the points that --stream keeps)",
+                     m_kept_inside},
                     options,
                     m_progress,
                     [&](auto& session) { write(session); });
+    m_run.samples_reason = has_all || m_options.number_of_samples > 0
+                               ? reason_of(m_run.deformation)
+                               : "default, --stream keeps a part of the points";
     m_progress.clear();
   }
 
@@ -148,6 +156,8 @@ private:
                   static_cast<std::uint64_t>(m_options.number_of_kept_points),
                   number_of_handles);
     m_run.normals = m_empty.has_normals() ? "deformed" : "none";
+    const Region region(m_region_edit, m_empty);
+    m_is_inside.clear();
     const auto add = [&](const Table& chunk, std::uint64_t first) {
       Normal_vectors normals;
       if (do_normals()) {
@@ -157,7 +167,10 @@ private:
           m_run.warnings.push_back(invalid_normal_warning(first + *invalid));
         }
       }
-      keeper.add(chunk, normals, m_scan ? m_scan->add(chunk) : std::vector<std::uint32_t>(), first);
+      const auto handles = m_scan ? m_scan->add(chunk) : std::vector<std::uint32_t>();
+      for (const char is_inside : region.in(chunk, first, handles, m_scan ? &*m_edit : nullptr))
+        m_is_inside.push_back(is_inside != 0);
+      keeper.add(chunk, normals, handles, first);
     };
     check_count(for_each_chunk("reading", add, !m_options.is_points_only));
     adapt_faces(m_faces, m_options.output, m_run);
@@ -169,6 +182,24 @@ private:
     }
     m_motions = m_scan->motions();
     check_handles();
+    check_region(region);
+  }
+
+  /// Finds the kept points of the region.
+  void check_region(const Region& region)
+  {
+    m_run.number_of_inside_points = region.is_given()
+                                        ? std::count(m_is_inside.begin(), m_is_inside.end(), true)
+                                        : static_cast<std::int64_t>(m_run.number_of_points);
+    region.check(m_run.number_of_points, static_cast<std::uint64_t>(m_run.number_of_inside_points));
+    m_kept_inside.clear();
+    if (!region.is_given())
+      return;
+    for (const std::uint64_t number : m_kept.numbers)
+      m_kept_inside.push_back(m_is_inside[number] ? 1 : 0);
+    if (std::find(m_kept_inside.begin(), m_kept_inside.end(), char(1)) == m_kept_inside.end())
+      throw pcs::IO_error(m_options.region,
+                          "none of the points of the region is kept; raise --stream-points");
   }
 
   void set_edit(Edit edit)
@@ -246,6 +277,8 @@ private:
     if (first == 0)
       m_next_kept = 0;
     std::vector<std::uint32_t> handles = m_scan->handles_of(chunk, first);
+    const std::vector<char> is_inside =
+        Region(m_region_edit, m_empty).in(chunk, first, handles, &*m_edit);
     Normal_vectors normals;
     if (do_normals())
       normals = chunk.normals();
@@ -266,7 +299,7 @@ private:
         move_rigidly(motion, chunk.points()[i], do_normals() ? &normals[i] : nullptr);
         if (m_splats)
           gradients[i] = motion.scale() * motion.rotation();
-      } else
+      } else if (is_inside.empty() || is_inside[i])
         others.push_back(i);
 
     const auto np = pcs::parameters::point_map(Point_map{&chunk.points()});
@@ -306,7 +339,10 @@ private:
   const Options& m_options;
   Run_report& m_run;
   Progress_line m_progress;
-  Table m_empty;                                // with the properties of the input
+  const Edit* m_region_edit;       // null: all points may move
+  std::vector<bool> m_is_inside;   // whether each point of the file may move; empty: all may
+  std::vector<char> m_kept_inside; // the same for the kept points
+  Table m_empty;                   // with the properties of the input
   std::shared_ptr<pcs::IO::Mesh_faces> m_faces; // null: none
   std::optional<Edit> m_edit;
   std::optional<Edit_scan> m_scan; // refers to m_edit

@@ -18,6 +18,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <type_traits>
@@ -324,6 +325,58 @@ private:
   std::map<std::pair<std::uint32_t, std::uint32_t>, Overlap> m_overlaps;
   std::uint64_t m_count = 0;
   Vec3 m_low = Vec3::Zero(), m_high = Vec3::Zero();
+};
+
+/// The points that may move, in the order of the input; all of them without a region.
+class Region
+{
+public:
+  /// \param edit the region as read by `read_region()`, or null; must outlive this object
+  /// \param empty has the properties of the input
+  Region(const Edit* edit, const pcs::IO::Point_table& empty)
+  {
+    if (edit == nullptr)
+      return;
+    m_selection.emplace(*edit, edit->handles.front());
+    m_selection->check_property(empty);
+  }
+
+  bool is_given() const { return m_selection.has_value(); }
+
+  /// Returns whether each point of a chunk, numbered from `first` on, may move; empty if all may.
+  /// Throws if a handle selects another point.
+  std::vector<char> in(const pcs::IO::Point_table& piece,
+                       std::uint64_t first,
+                       const std::vector<std::uint32_t>& handles,
+                       const Edit* edit) const
+  {
+    std::vector<char> is_inside;
+    if (!m_selection)
+      return is_inside;
+    is_inside.assign(piece.number_of_points(), 0);
+    for (const std::size_t i : m_selection->in(piece, first))
+      is_inside[i] = 1;
+    for (std::size_t i = 0; i < handles.size(); ++i)
+      if (handles[i] != no_handle && !is_inside[i])
+        throw pcs::IO_error(
+            edit->source,
+            edit->handles[handles[i]].pointer + "/select: point " + std::to_string(first + i) +
+                " is not in the --region; extend the region or select fewer points");
+    return is_inside;
+  }
+
+  /// Throws if the region is empty or lists a number that is none of the `n` points.
+  void check(std::uint64_t n, std::uint64_t number_of_points_inside) const
+  {
+    if (!m_selection)
+      return;
+    m_selection->check_numbers(n);
+    if (number_of_points_inside == 0)
+      m_selection->fail("", "selects none of the " + std::to_string(n) + " points");
+  }
+
+private:
+  std::optional<Selection> m_selection;
 };
 
 } // namespace program

@@ -198,6 +198,17 @@ inline Edit read_edit(const std::string& path)
   return edit;
 }
 
+/// Reads the region of interest: a selection, stored as the only handle of an edit.
+inline Edit read_region(const std::string& path)
+{
+  const Json json = read_json(path, "a region");
+  const Json_value top(json, path);
+  top.object({"select"});
+  if (!top.has("select"))
+    top.fail("the key select is missing");
+  return {path, {Handle{"", read_selector(top["select"]), Motion()}}};
+}
+
 } // namespace program
 
 #endif // PCS_EXAMPLES_PROGRAMS_DEFORMATION_READ_EDIT_H

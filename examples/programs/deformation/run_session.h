@@ -21,6 +21,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <numeric>
 #include <stdexcept>
@@ -66,6 +67,7 @@ struct Edited_points
   Normal_vectors* normals;                 ///< null: normals are not deformed
   std::vector<Eigen::Matrix3d>* gradients; ///< null: not needed; otherwise of the rest shape
   std::string note;                        ///< for messages that contain the number of a point
+  const std::vector<char>& is_inside;      ///< whether each point may move; empty: all may
 };
 
 inline bool is_hard(const Handle& handle)
@@ -94,6 +96,16 @@ inline std::vector<Vec3> sorted_targets(const Handle& handle)
   std::vector<Vec3> result;
   for (const auto& entry : target_of_point)
     result.push_back(entry.second);
+  return result;
+}
+
+/// Returns the indices of the entries that are set.
+inline std::vector<std::size_t> numbers_of(const std::vector<char>& is_set)
+{
+  std::vector<std::size_t> result;
+  for (std::size_t i = 0; i < is_set.size(); ++i)
+    if (is_set[i])
+      result.push_back(i);
   return result;
 }
 
@@ -143,13 +155,30 @@ pcs::Deformation_report run_session(const Edited_points& cloud,
     return report;
   };
   const auto np = pcs::parameters::point_map(Point_map{&cloud.points, &is_fixed})
-                      .number_of_samples(options.number_of_samples)
                       .number_of_neighbors(options.number_of_neighbors)
+                      .poisson_ratio(options.model.poisson_ratio)
+                      .stiffness(options.model.stiffness)
+                      .do_preserve_volume(!options.model.is_volume_ignored)
+                      .number_of_iterations(options.model.number_of_iterations)
+                      .tolerance(options.model.tolerance)
+                      .sample_weights(options.model.sample_weights())
+                      .sample_search(options.model.sample_search())
+                      .rotation_field(options.model.rotation_field())
                       .callback(show);
+  const std::vector<std::size_t> region = numbers_of(cloud.is_inside);
+  const auto run_in_region = [&](const auto& np_of_points) {
+    return cloud.is_inside.empty() ? run(np_of_points)
+                                   : run(np_of_points.region_of_interest(std::cref(region)));
+  };
+  const auto run_with_samples = [&](const auto& np_of_points) {
+    return options.number_of_samples > 0
+               ? run_in_region(np_of_points.number_of_samples(options.number_of_samples))
+               : run_in_region(np_of_points);
+  };
   const auto run_with_normals = [&](const auto& np_of_points) {
     return cloud.normals != nullptr
-               ? run(np_of_points.normal_map(Normal_map{cloud.normals, &is_fixed}))
-               : run(np_of_points);
+               ? run_with_samples(np_of_points.normal_map(Normal_map{cloud.normals, &is_fixed}))
+               : run_with_samples(np_of_points);
   };
   return cloud.gradients != nullptr
              ? run_with_normals(np.gradient_map(Gradient_map{cloud.gradients, &is_fixed}))
