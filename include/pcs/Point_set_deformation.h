@@ -376,9 +376,9 @@ public:
     deforms clouds that do not fit into memory: a subset is deformed first, then all points, chunk
     by chunk. A point moves rigidly if its nearest point of this object belongs to a handle, and
     remains unchanged if that point did not move. Otherwise the maps of nearby samples are blended
-    as for points of this object; if all points are samples, their maps are interpolated. Points of this object obtain the same result up to rounding with
-    `Sample_search::regions`, unless a shape was accepted. O(n log n) once per rest shape, then
-    O(log n) per point.
+    as for points of this object; if all points are samples, their maps are interpolated. Points of
+    this object obtain the same result up to rounding with `Sample_search::regions`, unless a shape
+    was accepted. O(n log n) once per rest shape, then O(log n) per point.
 
     \param points a model of `RandomAccessRange` at rest, modified in place
     \param np `point_map`, `normal_map` and `gradient_map` as in the constructor, for `points`

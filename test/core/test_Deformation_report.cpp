@@ -43,7 +43,8 @@ BOOST_AUTO_TEST_CASE(a_report_prints_its_counts)
   report.energy = 0.25;
   std::ostringstream out;
   out << report;
-  for (const char* word : {"converged", "12345 points", "678 samples (all points)", "91 points", "0.25"})
+  for (const char* word :
+       {"converged", "12345 points", "678 samples (all points)", "91 points", "0.25"})
     BOOST_TEST(out.str().find(word) != std::string::npos, out.str() << " lacks " << word);
 }
 

@@ -17,8 +17,8 @@ namespace pcs {
 constexpr std::size_t default_number_of_samples = 2000;
 //! \ingroup PkgPcsDeformationRef
 //! largest number of points at different positions that are all samples by default: they are solved
-//! within two frames (about 0.05 s on one thread), and the interior springs, which networks of up to
-//! this size have, keep the volume. Measured in benchmark/results/deformation.md [count]
+//! within one or two frames (0.04 s on one thread), and have springs through the interior. Measured
+//! in benchmark/results/deformation.md [count]
 constexpr std::size_t largest_unsampled_size = 20000;
 //! \ingroup PkgPcsDeformationRef
 //! default number of nearest neighbours linked to a point; 5 to 6 in \cite aiteanu2022 [count]

@@ -44,8 +44,8 @@ struct Elastic_state
   /// Growth of edges between scaled handles, `A_i`; empty if no handle is scaled. [-]
   const std::vector<Eigen::Matrix3d>& growth;
   const Link_targets& link_targets;
-  /// Transverse stretch of the material, of which `target` was computed; empty if Poisson's ratio is
-  /// zero. Links through the interior change their lengths with it. [-]
+  /// Transverse stretch of the material, from which `target` was computed; empty if Poisson's ratio
+  /// is zero. Links through the interior change their lengths with it. [-]
   const std::vector<Eigen::Matrix3d>& stretch;
 
   /// Weight of the frame in `deformation_gradient()`, relative to the spread of the edges. The

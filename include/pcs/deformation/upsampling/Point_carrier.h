@@ -27,9 +27,9 @@ namespace deformation {
   around the region of the site nearest to the point. The weights equal those of a point of the
   session at the same position.
 
-  If all sites are samples, every point of the session has the map of its own sample. The weights are
-  then divided by the squared distances: the map of a sample is interpolated at its position, and the
-  blended map is continuous.
+  If all sites are samples, every point of the session has the map of its own sample. The weights
+  are then divided by the squared distances: the map of a sample is interpolated at its position,
+  and the blended map is continuous.
 
   The object is built once per rest shape, and needs 40 bytes per site. `sample_of_site` and
   `sample_graph` must outlive it. Const functions may run concurrently. O(log n) per point for n
