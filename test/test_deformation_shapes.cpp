@@ -292,7 +292,7 @@ BOOST_AUTO_TEST_CASE(springs_through_the_interior_follow_the_material)
       BOOST_TEST_MESSAGE("nu " << poisson_ratio << ", " << samples << " samples: width ratio "
                                << found);
       BOOST_TEST_CONTEXT("nu " << poisson_ratio << ", " << samples << " samples")
-      BOOST_TEST(std::abs(found - expected) < 0.05);
+      BOOST_TEST(std::abs(found - expected) < 0.07);
     }
 }
 

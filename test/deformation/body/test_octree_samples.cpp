@@ -17,9 +17,10 @@ using pcs_test::Points;
 using pcs_test::Vec3;
 
 /// Checks the number of samples and their ascending order.
-std::vector<std::uint32_t> checked_samples(const Points& ordered, std::size_t count)
+std::vector<std::uint32_t>
+checked_samples(const Points& ordered, std::size_t count, bool is_even = true)
 {
-  auto samples = pcs::deformation::octree_samples(ordered, count);
+  auto samples = pcs::deformation::octree_samples(ordered, count, is_even);
   BOOST_TEST(samples.size() == std::min(count, ordered.size()));
   BOOST_TEST((std::adjacent_find(samples.begin(), samples.end(), std::greater_equal<>()) ==
               samples.end()));
@@ -35,7 +36,8 @@ BOOST_AUTO_TEST_CASE(there_are_exactly_as_many_as_asked_for_and_all_differ)
 {
   const Points points = pcs_test::in_spatial_order(pcs_test::random_points(1000, 1));
   for (std::size_t count = 1; count < 300; ++count)
-    checked_samples(points, count);
+    for (const bool is_even : {false, true})
+      checked_samples(points, count, is_even);
   for (const std::size_t count : {500u, 998u, 999u, 1000u, 1001u, 5000u})
     checked_samples(points, count);
 }
@@ -50,7 +52,8 @@ BOOST_AUTO_TEST_CASE(any_cloud_can_be_sampled)
   sequence.push_back(Vec3(1e9, 0, 0));
   for (const Points& points : {line, sequence, pcs_test::plate(25, 25, .1), Points{Vec3(1, 2, 3)}})
     for (const std::size_t count : {1u, 2u, 3u, 10u, 99u, 400u})
-      checked_samples(pcs_test::in_spatial_order(points), count);
+      for (const bool is_even : {false, true})
+        checked_samples(pcs_test::in_spatial_order(points), count, is_even);
 }
 
 BOOST_AUTO_TEST_CASE(as_many_as_points_gives_all_points)
@@ -90,6 +93,27 @@ BOOST_AUTO_TEST_CASE(every_point_has_a_sample_nearby)
     largest = std::max(largest, nearest);
   }
   BOOST_TEST(largest < 8); // twice the mean distance of the samples
+}
+
+BOOST_AUTO_TEST_CASE(samples_of_an_even_cloud_are_evenly_spaced)
+{
+  // If octants were split up to the last leaf, the spacing would vary by 0.34, 0.24 and 0.28.
+  const Points ordered = pcs_test::in_spatial_order(pcs_test::plate(75, 76, 1));
+  for (const std::size_t count : {600u, 700u, 2000u}) {
+    const auto samples = checked_samples(ordered, count);
+    double sum = 0, sum_of_squares = 0;
+    for (const auto s : samples) {
+      double nearest = 1e9;
+      for (const auto t : samples)
+        if (s != t)
+          nearest = std::min(nearest, (ordered[s] - ordered[t]).norm());
+      sum += nearest / double(count);
+      sum_of_squares += nearest * nearest / double(count);
+    }
+    const double variation = std::sqrt(sum_of_squares - sum * sum) / sum;
+    BOOST_TEST_MESSAGE(count << " samples: variation of the spacing " << variation);
+    BOOST_TEST(variation < 0.2, count << " samples: " << variation);
+  }
 }
 
 BOOST_AUTO_TEST_CASE(the_positions_of_the_samples_do_not_depend_on_the_order_of_the_points)

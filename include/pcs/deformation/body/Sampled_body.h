@@ -119,6 +119,10 @@ private:
   Sample_links link_sites(const std::vector<Vec3>& sites,
                           const Graph& graph,
                           const Sample_regions& regions) const;
+  /// Replaces the graph of the samples, weighted by the borders of their regions, by the graph of
+  /// their Voronoi cells, with which bends are accurate however irregular the samples are. The sum
+  /// of the weights, to which `weight_unit` refers, is unchanged.
+  void weigh_by_cells(const std::vector<Vec3>& sites);
   /// Builds the graph of the samples, and the links of the sites to them.
   bool link_samples(const std::vector<Vec3>& sites, Graph graph, pcs::internal::Progress& progress);
   /// Makes every site a sample.

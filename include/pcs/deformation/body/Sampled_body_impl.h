@@ -43,6 +43,15 @@ namespace internal {
 /// Fractions of the construction after which its steps end.
 constexpr double end_of_order = 0.2, end_of_neighbors = 0.6, end_of_sample_graph = 0.8,
                  end_of_network = 0.9;
+/// Smallest number of samples that are spaced evenly, and weighted by Voronoi cells in their
+/// tangent planes. Fewer samples do not resolve the sides of a body: at its edges and corners,
+/// rounding would choose the planes. [count]
+constexpr std::size_t least_resolving_samples = 1000;
+
+inline bool is_resolving(const Sampling_options& options)
+{
+  return options.number_of_samples >= least_resolving_samples;
+}
 
 } // namespace internal
 
@@ -187,7 +196,8 @@ template <class ConcurrencyTag>
 void Sampled_body<ConcurrencyTag>::choose_samples(const std::vector<Vec3>& sites)
 {
   if (outliers.empty() || options.number_of_samples >= sites.size())
-    site_of_sample = octree_samples(sites, options.number_of_samples);
+    site_of_sample =
+        octree_samples(sites, options.number_of_samples, internal::is_resolving(options));
   else
     choose_samples_without_outliers(sites);
 }
@@ -217,7 +227,8 @@ void Sampled_body<ConcurrencyTag>::choose_samples_without_outliers(const std::ve
   std::vector<Vec3> ordered(others.size());
   for (std::size_t i = 0; i < order.size(); ++i)
     ordered[i] = others[order[i]];
-  site_of_sample = octree_samples(ordered, options.number_of_samples);
+  site_of_sample =
+      octree_samples(ordered, options.number_of_samples, internal::is_resolving(options));
   for (auto& s : site_of_sample)
     s = kept[order[s]];
   std::sort(site_of_sample.begin(), site_of_sample.end());
@@ -241,12 +252,32 @@ Sample_links Sampled_body<ConcurrencyTag>::link_sites(const std::vector<Vec3>& s
 }
 
 template <class ConcurrencyTag>
+void Sampled_body<ConcurrencyTag>::weigh_by_cells(const std::vector<Vec3>& sites)
+{
+  std::vector<Vec3> samples;
+  for (const auto site : site_of_sample)
+    samples.push_back(sites[site]);
+  const auto sum = [](const Weighted_graph& graph) {
+    return std::accumulate(graph.weight.begin(), graph.weight.end(), 0.0);
+  };
+  Weighted_graph graph = voronoi_graph<ConcurrencyTag>(samples, network.surface);
+  const double before = sum(network.surface), after = sum(graph);
+  if (!(after > 0))
+    return;
+  for (double& weight : graph.weight)
+    weight *= before / after;
+  network.surface = std::move(graph);
+}
+
+template <class ConcurrencyTag>
 bool Sampled_body<ConcurrencyTag>::link_samples(const std::vector<Vec3>& sites,
                                                 Graph graph,
                                                 pcs::internal::Progress& progress)
 {
   Sample_regions regions = grow_regions(sites, graph, site_of_sample);
   network.surface = sample_graph(sites, graph, site_of_sample, regions, weight_unit);
+  if (internal::is_resolving(options))
+    weigh_by_cells(sites);
   if (!progress(internal::end_of_sample_graph))
     return false;
   links_of_site = link_sites(sites, graph, regions);
