@@ -23,6 +23,7 @@
 #include <quality/mesh_peer.h>
 #include <quality/quality_measures.h>
 #include <quality/reference_field.h>
+#include <quality/survey_cases.h>
 #include <string>
 #include <utility>
 #include <vector>
@@ -178,8 +179,11 @@ void run_case(Report& report,
       report.add(c, name_of(kind), "exact", edges, exact);
     }
     double seconds = 0;
-    for (const std::size_t samples :
-         {std::size_t(0), std::size_t(200), std::size_t(1000), std::size_t(5000)}) {
+    for (const std::size_t samples : {std::size_t(0),
+                                      std::size_t(200),
+                                      std::size_t(1000),
+                                      std::size_t(2000),
+                                      std::size_t(5000)}) {
       if (samples >= c.points.size())
         continue;
       const Result result = deform(c, samples == 0 ? c.points.size() : samples);
@@ -295,6 +299,14 @@ int main(int argc, char** argv)
     run_case(report, pcs_bench::rough_bar_bend_120(), grid, options);
     run_case(report, pcs_bench::bar_two_axes(), grid, options);
     run_case(report, pcs_bench::bar_400_then_90(), grid, options);
+    const std::vector<Sampling_kind> measured = {Sampling_kind::grid,
+                                                 Sampling_kind::random,
+                                                 Sampling_kind::blue_noise,
+                                                 Sampling_kind::gradient,
+                                                 Sampling_kind::scan_noise};
+    run_case(report, pcs_bench::survey_bar(), measured, options);
+    run_case(report, pcs_bench::survey_cylinder(), measured, options);
+    run_case(report, pcs_bench::survey_cactus(), measured, options);
     report.table().print(std::cout);
     if (options.only.empty() || options.only == "T6") {
       std::cout << "T6: two sheets joined along one end, 1.5 spacings apart; exact: no motion\n\n";
