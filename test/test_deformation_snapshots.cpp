@@ -463,6 +463,75 @@ BOOST_AUTO_TEST_CASE(the_gradient_of_one_point_is_the_written_one)
   }
 }
 
+BOOST_AUTO_TEST_CASE(a_local_map_maps_a_point_and_its_surroundings)
+{
+  for (const int samples : {1000000, 150}) {
+    const pcs_test::Bar_edit edit(12, 48);
+    const Points rest = edit.points;
+    Points points = rest;
+    pcs::Point_set_deformation session(points, pcs::parameters::number_of_samples(samples));
+    BOOST_TEST(session.local_map(7).isApprox(Eigen::Affine3d::Identity()));
+    for (const auto& handle : edit.handles)
+      session.set_transformation(session.add_handle(handle.indices), handle.transformation);
+    session.deform();
+    double largest = 0, sum = 0;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+      const Eigen::Affine3d map = session.local_map(i);
+      BOOST_REQUIRE((map * rest[i] - points[i]).norm() < 1e-12);
+      BOOST_REQUIRE((map.linear() - session.deformation_gradient(i)).norm() < 1e-15);
+      if (i > 0 && (rest[i] - rest[i - 1]).norm() < .1) {
+        const double error = (map * rest[i - 1] - points[i - 1]).norm();
+        largest = std::max(largest, error);
+        sum += error;
+        ++count;
+      }
+    }
+    BOOST_TEST_MESSAGE("neighbours: mean error " << sum / double(count) << ", largest " << largest);
+    BOOST_TEST(count > 100u);
+    BOOST_TEST(sum / double(count) < .02); // a spacing is 0.083
+    BOOST_CHECK_EXCEPTION(session.local_map(points.size()), Invalid_input, message_has("no point"));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(the_energies_of_samples_add_up_and_show_where_a_body_is_strained)
+{
+  for (const int samples : {1000000, 150}) {
+    const pcs_test::Bar_edit edit(12, 48);
+    Points points = edit.points;
+    pcs::Point_set_deformation session(points, pcs::parameters::number_of_samples(samples));
+    for (const double energy : session.energies_of_samples())
+      BOOST_REQUIRE(energy == 0);
+    for (const auto& handle : edit.handles)
+      session.set_transformation(session.add_handle(handle.indices), handle.transformation);
+    const auto report = session.deform();
+    const std::vector<double> energies = session.energies_of_samples();
+    BOOST_TEST(energies.size() == session.number_of_samples());
+    double sum = 0, in_handles = 0;
+    for (std::size_t k = 0; k < energies.size(); ++k) {
+      BOOST_REQUIRE(energies[k] >= 0);
+      sum += energies[k];
+      const double height = edit.points[session.point_of_sample(k)].z();
+      if (height < .05 || height > 3.95) // well inside a handle
+        in_handles = std::max(in_handles, energies[k]);
+    }
+    BOOST_TEST_MESSAGE(samples << " samples: energy " << report.energy << ", of samples " << sum);
+    BOOST_TEST(std::abs(sum - report.energy) < 1e-9 * report.energy);
+    BOOST_TEST(in_handles < .5 * *std::max_element(energies.begin(), energies.end()));
+    const auto snapshot = session.snapshot();
+    session.restore(snapshot);
+    BOOST_CHECK_EXCEPTION(session.energies_of_samples(),
+                          Invalid_input,
+                          message_has("last deform()"));
+    session.reset();
+    for (const double energy : session.energies_of_samples())
+      BOOST_REQUIRE(energy == 0);
+    BOOST_CHECK_EXCEPTION(session.point_of_sample(energies.size()),
+                          Invalid_input,
+                          message_has("no such sample"));
+  }
+}
+
 BOOST_AUTO_TEST_CASE(a_common_rotation_is_the_local_rotation_of_all_points)
 {
   const Bar_edit edit;

@@ -22,6 +22,7 @@
 #include <pcs/internal/progress.h>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include <cstddef>
 #include <functional>
@@ -412,6 +413,52 @@ public:
   {
     check_gradient(i, "pcs::Point_set_deformation::local_rotation()");
     return m_session->local_rotation(i);
+  }
+
+  /// Returns the affine map of a point in the current shape. Its linear part is
+  /// `deformation_gradient(i)`, and it maps the position at rest to the position in the range.
+  /// O(1). Throws like `deformation_gradient()`.
+  Eigen::Affine3d local_map(std::size_t i) const
+  {
+    const char* function = "pcs::Point_set_deformation::local_map()";
+    check_gradient(i, function);
+    deformation::check_number_of_points(m_session, m_access.size(), function);
+    Eigen::Affine3d map = Eigen::Affine3d::Identity();
+    map.linear() = m_session->gradient(i);
+    if constexpr (Access::is_ok)
+      map.translation() = m_access.point(i) - map.linear() * m_session->rest_position(i);
+    return map;
+  }
+
+  /*!
+    Returns the parts of the energy that belong to the samples: where the body is strained.
+    Their sum is `Deformation_report::energy`, unless a handle has targets. For display, the value
+    of sample `k` belongs to the point `point_of_sample(k)`. O(samples).
+    \return `number_of_samples()` values; zero at rest [L^2]
+    \throws Invalid_input if the current shape is not the result of the last `deform()`: after
+            `restore()`, or if handles were added or removed since then
+  */
+  std::vector<double> energies_of_samples() const
+  {
+    const char* function = "pcs::Point_set_deformation::energies_of_samples()";
+    deformation::check_ready(m_session, function);
+    internal::check(m_session->has_energies(),
+                    function,
+                    "the shape is not the result of the last deform(); call it first");
+    std::vector<double> energies(m_session->number_of_samples());
+    for (std::size_t k = 0; k < energies.size(); ++k)
+      energies[k] = m_session->energy_of_sample(k);
+    return energies;
+  }
+
+  /// Returns the position in the range of the point at sample `k`.
+  /// \throws Invalid_input if there is no such sample
+  std::size_t point_of_sample(std::size_t k) const
+  {
+    const char* function = "pcs::Point_set_deformation::point_of_sample()";
+    deformation::check_ready(m_session, function);
+    internal::check(k < m_session->number_of_samples(), function, "there is no such sample");
+    return m_session->point_of_sample(k);
   }
 
   /// Returns the current shape, its handles and their motions. The snapshot stores data of the

@@ -144,6 +144,15 @@ public:
   /// positive.
   Eigen::Matrix3d local_rotation(std::size_t i) const;
 
+  /// Returns the position at rest of a point, in the caller's coordinates. [L]
+  Vec3 rest_position(std::size_t i) const;
+  /// Returns the index of the point at a sample.
+  std::size_t point_of_sample(std::size_t sample) const;
+  /// Whether the current shape is the rest shape, or was solved last and not restored.
+  bool has_energies() const;
+  /// Returns the part of the energy that belongs to a sample; `has_energies()` must be true. [L^2]
+  double energy_of_sample(std::size_t sample) const;
+
   /// Builds the search trees of `carry()` unless they exist. O(n log n).
   void prepare_carrying();
 

@@ -302,6 +302,39 @@ Eigen::Matrix3d Session<ConcurrencyTag>::local_rotation(std::size_t i) const
 }
 
 template <class ConcurrencyTag>
+Vec3 Session<ConcurrencyTag>::rest_position(std::size_t i) const
+{
+  const Session_state<ConcurrencyTag>& s = *m_state;
+  return s.rest_positions(i, [&] {
+    return s.body.frame.to_world(s.body.rest_points.position(s.body.place_of_input(i)));
+  });
+}
+
+template <class ConcurrencyTag>
+std::size_t Session<ConcurrencyTag>::point_of_sample(std::size_t sample) const
+{
+  const Sampled_body<ConcurrencyTag>& body = m_state->body;
+  return body.input_of_place[body.first_place(body.site_of_sample[sample])];
+}
+
+template <class ConcurrencyTag>
+bool Session<ConcurrencyTag>::has_energies() const
+{
+  const Session_state<ConcurrencyTag>& s = *m_state;
+  return s.is_at_rest || (s.has_solution && s.setting_of_sites == s.setting_of_shape);
+}
+
+template <class ConcurrencyTag>
+double Session<ConcurrencyTag>::energy_of_sample(std::size_t sample) const
+{
+  const Session_state<ConcurrencyTag>& s = *m_state;
+  if (s.is_at_rest || s.sites[s.body.site_of_sample[sample]] == unreached_node)
+    return 0;
+  const double unit = s.body.frame.unit;
+  return s.solver.state().energy_of_node(sample, s.body.network.size()) * unit * unit;
+}
+
+template <class ConcurrencyTag>
 void Session<ConcurrencyTag>::prepare_carrying()
 {
   Session_state<ConcurrencyTag>& s = *m_state;

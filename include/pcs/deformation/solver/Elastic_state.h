@@ -130,6 +130,28 @@ struct Elastic_state
     return energy;
   }
 
+  /// Returns the part of the energy that belongs to node `i` among the first `count` nodes: half of
+  /// its edges and links to other such nodes, and all of its edges to further nodes.
+  double energy_of_node(std::size_t i, std::size_t count) const
+  {
+    const auto& graph = network.surface;
+    double energy = 0;
+    for (std::size_t e = graph.first[i]; e < graph.first[i + 1]; ++e) {
+      const std::size_t j = graph.neighbor[e];
+      const Vec3 edge = network.rest[j] - network.rest[i];
+      const Vec3 error = position[j] - position[i] - 0.5 * (target[i] * edge + target[j] * edge);
+      energy += (j < count ? 0.5 : 1) * graph.weight[e] * error.squaredNorm();
+    }
+    const auto& links = network.links;
+    if (!links.neighbor.empty())
+      for (std::size_t e = links.first[i]; e < links.first[i + 1]; ++e) {
+        const std::size_t j = links.neighbor[e];
+        const double error = (position[i] - position[j]).norm() - link_length(i, j, e);
+        energy += 0.5 * links.weight[e] * error * error;
+      }
+    return energy;
+  }
+
   /// Returns the stretch of a material with the given Poisson's ratio `nu` under its current main
   /// stretch `s1` along `v`: `S = s1 v v^T + s1^-nu (I - v v^T)`.
   Eigen::Matrix3d transverse_stretch(std::size_t i, double poisson_ratio) const
