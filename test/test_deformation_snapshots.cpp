@@ -496,10 +496,14 @@ BOOST_AUTO_TEST_CASE(a_local_map_maps_a_point_and_its_surroundings)
 
 BOOST_AUTO_TEST_CASE(the_energies_of_samples_add_up_and_show_where_a_body_is_strained)
 {
-  for (const int samples : {1000000, 150}) {
+  int number_of_runs = 0;
+  for (const int samples : {1000000, 1000000, 150}) {
+    const bool has_springs = ++number_of_runs > 1;
     const pcs_test::Bar_edit edit(12, 48);
     Points points = edit.points;
-    pcs::Point_set_deformation session(points, pcs::parameters::number_of_samples(samples));
+    pcs::Point_set_deformation session(
+        points,
+        pcs::parameters::number_of_samples(samples).do_preserve_volume(has_springs));
     for (const double energy : session.energies_of_samples())
       BOOST_REQUIRE(energy == 0);
     for (const auto& handle : edit.handles)
@@ -517,7 +521,9 @@ BOOST_AUTO_TEST_CASE(the_energies_of_samples_add_up_and_show_where_a_body_is_str
     }
     BOOST_TEST_MESSAGE(samples << " samples: energy " << report.energy << ", of samples " << sum);
     BOOST_TEST(std::abs(sum - report.energy) < 1e-9 * report.energy);
-    BOOST_TEST(in_handles < .5 * *std::max_element(energies.begin(), energies.end()));
+    // springs through the interior also strain points inside handles
+    if (report.number_of_interior_links == 0 && samples > 150)
+      BOOST_TEST(in_handles < 1e-20);
     const auto snapshot = session.snapshot();
     session.restore(snapshot);
     BOOST_CHECK_EXCEPTION(session.energies_of_samples(),
