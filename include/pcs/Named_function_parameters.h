@@ -35,6 +35,13 @@
   PCS_OWN(vector_map)                                                                              \
   PCS_OWN(tensor_map)                                                                              \
   PCS_OWN(gradient_map)                                                                            \
+  /* fit_point_set(): matches of two clouds */                                                     \
+  PCS_OWN(landmarks)                                                                               \
+  PCS_OWN(fitting_length)                                                                          \
+  PCS_OWN(outlier_share)                                                                           \
+  PCS_OWN(do_align)                                                                                \
+  PCS_OWN(point_is_matched_map)                                                                    \
+  PCS_OWN(point_match_map)                                                                         \
   /* extract_tree_skeleton(): the scan, its ground and its leaves */                               \
   PCS_OWN(up_direction)                                                                            \
   PCS_OWN(root_position)                                                                           \

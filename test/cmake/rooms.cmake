@@ -46,6 +46,14 @@ set(deformation_upsampling
   handles/Target_field.h
   solver/Elastic_state.h)
 
+# The registration deforms the samples of a body by its own solver.
+set(registration_deformation
+  access
+  body/Sampled_body.h
+  body/Sampled_body_impl.h
+  body/octree_samples.h
+  model)
+
 # ---- skeleton: extract_tree_skeleton, segment_trees
 set(root_skeleton
   Resampled_session.h
