@@ -48,9 +48,15 @@ inline Rigid_motion fit_motion(const std::vector<Vec3>& source,
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < source.size(); ++i)
     covariance += weight[i] * (target[i] - cy) * (source[i] - cx).transpose();
-  constexpr int most_iterations = 50;
-  motion.r =
-      improve_rotation(covariance, Quaternion::Identity(), most_iterations).toRotationMatrix();
+  constexpr int most_steps = 200; // after a few, the convergence is quadratic
+  Quaternion q = Quaternion::Identity();
+  for (int k = 0; k < most_steps; ++k) {
+    const Vec3 turn = newton_turn(covariance * q.toRotationMatrix().transpose(), 0);
+    q = (rotation_exp(turn) * q).normalized();
+    if (turn.squaredNorm() < 1e-28)
+      break;
+  }
+  motion.r = q.toRotationMatrix();
   motion.t = cy - motion.r * cx;
   return motion;
 }
