@@ -149,7 +149,7 @@ void add_outliers(double share, std::mt19937_64& random, Points& target)
 }
 
 /// Splits a model into a source and a target without common points.
-Pair make_pair(const Case& c, const Points& model)
+Pair split_model(const Case& c, const Points& model)
 {
   std::mt19937_64 random(1);
   Pair pair;
@@ -200,7 +200,7 @@ struct Options
 
 void add_pair(const Case& c, const Options& options, pcs_bench::Table& table)
 {
-  const Pair pair = make_pair(c, read_model(options.data, c.model));
+  const Pair pair = split_model(c, read_model(options.data, c.model));
   const pcs_bench::Timer icp_timer;
   const double icp = percent(pcs_bench::rigid_icp(pair.source, pair.target, 0.8), pair.truth);
   const double icp_seconds = icp_timer.seconds();

@@ -49,9 +49,9 @@ struct Options
 
 const char* help()
 {
-  return R"(The source keeps its points, their order and properties; the faces of a mesh in PLY, OFF or
-OBJ are kept in these formats. Normals nx, ny, nz follow. Lengths are fractions of the extent of
-the source, the diagonal of its bounding box.
+  return R"(The source keeps its points, their order and properties. The faces of a mesh in PLY,
+OFF or OBJ are kept in these formats. Normals nx, ny, nz follow. Lengths are fractions of the
+extent of the source, the diagonal of its bounding box.
 
 Landmarks are known pairs of a source point, counted from 0, and its position on the target. Three
 or more determine the initial pose. JSON: [{"point": 12, "target": [x, y, z]}, ...]. All other

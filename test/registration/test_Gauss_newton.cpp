@@ -188,7 +188,7 @@ BOOST_AUTO_TEST_CASE(a_component_without_attraction_follows_its_neighbour)
       for (std::uint32_t j = 0; j < 4; ++j)
         if (j != i)
           network.surface.neighbor.push_back(4 * c + j);
-      network.surface.first.push_back(network.surface.neighbor.size());
+      network.surface.first.push_back(static_cast<std::uint32_t>(network.surface.neighbor.size()));
     }
   network.surface.weight.assign(network.surface.neighbor.size(), 1);
   const reg::Elastic_edges edges = reg::collect_edges(network, component);
