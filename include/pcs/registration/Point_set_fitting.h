@@ -132,12 +132,12 @@ public:
         [extents of the source]
         \nptype floating point, `>= 0`
         \npdefault 1e-4
-      \np{point_is_matched_map} written by `fit()`: whether the point has a match. Points without
-        match lie where the target has a hole, or are not part of it.
+      \np{point_is_matched_map} written by `fit()` after the points: whether a point has a
+        match. Points without match lie where the target has a hole, or are not part of it.
         \nptype model of `WritablePropertyMap`, key: element of `points`, value: `bool`
         \npdefault none
-      \np{point_match_map} written by `fit()`: the position of the closest target point in its
-        range, or -1 without match
+      \np{point_match_map} written by `fit()` after the points: the position of the closest
+        target point in its range, or -1 without match
         \nptype model of `WritablePropertyMap`, key: element of `points`, value: a signed integer
         \npdefault none
       \np{callback} called on this thread with a value that grows from 0 to 1; `false` stops, and no
