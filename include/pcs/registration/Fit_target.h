@@ -56,7 +56,31 @@ struct Fit_target
              const std::vector<Vec3>& normals,
              std::size_t number_of_fine_points)
   {
-    input = spread_points<ConcurrencyTag>(points, points.size());
+    keep<ConcurrencyTag>(spread_points<ConcurrencyTag>(points, points.size()), points, normals);
+    const std::vector<std::uint32_t> of_surface = all.template points_of_surface<ConcurrencyTag>();
+    constexpr double least_share = 0.5; // otherwise, the cloud is no surface
+    if (of_surface.size() < all.size() &&
+        static_cast<double>(of_surface.size()) >= least_share * static_cast<double>(all.size())) {
+      std::vector<std::uint32_t> kept;
+      for (const auto i : of_surface)
+        kept.push_back(input[i]);
+      keep<ConcurrencyTag>(std::move(kept), points, normals);
+    }
+    for (const auto i : spread_points<ConcurrencyTag>(all.points(), number_of_soft_points))
+      soft.push_back(all.points()[i]);
+    for (const auto i : spread_points<ConcurrencyTag>(all.points(), number_of_fine_points)) {
+      fine.push_back(all.points()[i]);
+      fine_normals.push_back(all.normals()[i]);
+    }
+  }
+
+private:
+  template <class ConcurrencyTag>
+  void keep(std::vector<std::uint32_t> indices,
+            const std::vector<Vec3>& points,
+            const std::vector<Vec3>& normals)
+  {
+    input = std::move(indices);
     std::vector<Vec3> kept, kept_normals;
     for (const auto i : input) {
       kept.push_back(points[i]);
@@ -64,12 +88,6 @@ struct Fit_target
         kept_normals.push_back(normals[i]);
     }
     all.template build<ConcurrencyTag>(std::move(kept), std::move(kept_normals));
-    for (const auto i : spread_points<ConcurrencyTag>(all.points(), number_of_soft_points))
-      soft.push_back(all.points()[i]);
-    for (const auto i : spread_points<ConcurrencyTag>(all.points(), number_of_fine_points)) {
-      fine.push_back(all.points()[i]);
-      fine_normals.push_back(all.normals()[i]);
-    }
   }
 };
 

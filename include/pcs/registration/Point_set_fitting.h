@@ -320,7 +320,7 @@ private:
                                             cloud.normals,
                                             m_session->number_of_fine_points());
     }
-    progress.stage(0, 1);
+    report.number_of_target_points = cloud.points.size();
     if (!progress(0.2))
       return report;
     const bool is_warm = start == Solver_start::warm && m_has_shape;
@@ -381,7 +381,6 @@ private:
     for (const Match_writer* put_matches : {&m_put_is_matched, &m_put_match})
       if (*put_matches)
         (*put_matches)(index);
-    report.number_of_target_points = target.all.size();
     report.number_of_samples = number_of_samples();
     report.number_of_matched = residuals.size();
     report.rms_residual =

@@ -34,6 +34,10 @@ constexpr std::size_t neighbor_of_reach = 8;
 /// Number of nearest points whose tangent planes are considered for one query. [count]
 constexpr std::size_t candidates_of_match = 4;
 
+/// Largest reach of a point of a surface. Steps of the density by a factor of four have a ratio
+/// of 2. [median reaches of the neighbours]
+constexpr double isolated_reach = 3;
+
 /// Returns the direction of least spread of the points around `center`, or the null vector if they
 /// do not determine a plane, as on a line. [-]
 inline Vec3 normal_of_points(const std::vector<Vec3>& points,
@@ -92,6 +96,34 @@ public:
     m_points = std::move(points);
     m_normals = std::move(normals);
     m_tree = std::make_unique<neighborhood::Nearest_neighbors>(m_points);
+  }
+
+  /// Returns the points whose surroundings are not much denser than themselves: the reach of the
+  /// others exceeds `isolated_reach` times the median reach of their neighbours.
+  template <class ConcurrencyTag>
+  std::vector<std::uint32_t> points_of_surface() const
+  {
+    std::vector<char> is_isolated(size(), 0);
+    pcs::internal::for_each_block<ConcurrencyTag>(
+        size(),
+        256,
+        [&](std::size_t begin, std::size_t end) {
+          std::vector<Neighbor> around;
+          std::vector<double> reach;
+          for (std::size_t i = begin; i < end; ++i) {
+            (*m_tree)(m_points[i], neighbor_of_reach + 1, around);
+            reach.clear();
+            for (const Neighbor& a : around)
+              if (a.index != i)
+                reach.push_back(m_reach[a.index]);
+            is_isolated[i] = m_reach[i] > isolated_reach * pcs::internal::lower_median(reach);
+          }
+        });
+    std::vector<std::uint32_t> result;
+    for (std::size_t i = 0; i < size(); ++i)
+      if (!is_isolated[i])
+        result.push_back(static_cast<std::uint32_t>(i));
+    return result;
   }
 
   std::size_t size() const { return m_points.size(); }
