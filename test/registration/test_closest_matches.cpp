@@ -95,6 +95,22 @@ BOOST_AUTO_TEST_CASE(duplicates_of_a_target_are_dropped_and_indices_are_those_of
     BOOST_TEST(points[target.input[k]] == target.all.points()[k]);
 }
 
+BOOST_AUTO_TEST_CASE(isolated_points_are_dropped_and_a_step_of_the_density_is_not)
+{
+  std::vector<Vec3> points = square();
+  for (int i = 0; i < 10; ++i) // the other half with a quarter of the density
+    for (int j = 0; j < 10; ++j)
+      points.emplace_back(1.1 + i / 9.5, j / 9.5, 0);
+  const std::size_t n = points.size();
+  for (int k = 0; k < 5; ++k)
+    points.emplace_back(0.2 * k, 0.5, 0.5 + 0.1 * k);
+  reg::Fit_target target;
+  target.build<Tag>(points, {}, 1000);
+  BOOST_TEST(target.all.size() == n);
+  for (const Vec3& p : target.all.points())
+    BOOST_TEST(p.z() == 0);
+}
+
 BOOST_AUTO_TEST_SUITE_END()
 
 } // namespace test_closest_matches
