@@ -166,11 +166,14 @@ private:
                 const Vec3& r,
                 double weight)
   {
-    m_block[m_first[i]] += weight * ji.transpose() * ji;
-    m_block[m_first[j]] += weight * jj.transpose() * jj;
-    add_block(j, i, weight * jj.transpose() * ji);
-    m_gradient[i] -= weight * ji.transpose() * r;
-    m_gradient[j] -= weight * jj.transpose() * r;
+    const Eigen::Matrix<double, 3, 6> wi = weight * ji, wj = weight * jj;
+    m_block[m_first[i]].noalias() += ji.transpose() * wi;
+    m_block[m_first[j]].noalias() += jj.transpose() * wj;
+    Matrix6 m;
+    m.noalias() = jj.transpose() * wi;
+    add_block(j, i, m);
+    m_gradient[i].noalias() -= wi.transpose() * r;
+    m_gradient[j].noalias() -= wj.transpose() * r;
   }
 
   void add_edges(const Energy_weights& weights, const Deformable_shape& shape)
