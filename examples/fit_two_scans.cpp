@@ -10,6 +10,7 @@
 
 #include <boost/property_map/property_map.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
@@ -19,11 +20,20 @@
 using Kernel = CGAL::Simple_cartesian<double>;
 using Point = Kernel::Point_3;
 
+constexpr double curvature = 0.1;
+
 /// Bends about the y axis.
 Point bend(const Point& p)
 {
-  const double k = 0.1, r = 1 / k - p.x();
-  return Point(1 / k - r * std::cos(k * p.z()), p.y(), r * std::sin(k * p.z()));
+  const double r = 1 / curvature - p.x(), angle = curvature * p.z();
+  return Point(1 / curvature - r * std::cos(angle), p.y(), r * std::sin(angle));
+}
+
+/// Distance from the surface of the bent pillar of radius 1.
+double distance_from_bent_pillar(const Point& p)
+{
+  const double x = 1 / curvature - std::hypot(1 / curvature - p.x(), p.z());
+  return std::abs(std::hypot(x, p.y()) - 1);
 }
 
 /// Writes whether the point `i` is matched.
@@ -44,9 +54,7 @@ struct Is_matched_map
 
 int main()
 {
-  std::vector<Point> source = make_pillar<Point>(4000), target, truth;
-  for (const Point& p : source)
-    truth.push_back(bend(p));
+  std::vector<Point> source = make_pillar<Point>(4000), target;
   const double height = source.back().z();
   for (const Point& p : make_pillar<Point>(5000)) // another sampling, with a hole on one side
     if (!(p.x() > 0 && std::abs(p.z() - 0.5 * height) < 0.1 * height))
@@ -65,11 +73,11 @@ int main()
       filled.push_back(source[i]);
   //! [fit]
 
-  double sum = 0;
-  for (std::size_t i = 0; i < source.size(); ++i)
-    sum += CGAL::squared_distance(source[i], truth[i]);
-  const double error = std::sqrt(sum / static_cast<double>(source.size()));
-  std::cout << report << "\n"
-            << filled.size() - target.size() << " points fill the hole, error " << error << '\n';
-  return report.is_plausible && error < 0.02 * height ? EXIT_SUCCESS : EXIT_FAILURE;
+  double farthest = 0;
+  for (std::size_t i = target.size(); i < filled.size(); ++i)
+    farthest = std::max(farthest, distance_from_bent_pillar(filled[i]));
+  std::cout << report << '\n'
+            << filled.size() - target.size() << " points fill the hole, at most " << farthest
+            << " from the true surface\n";
+  return report.is_plausible && farthest < 0.1 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -71,7 +71,7 @@ BOOST_AUTO_TEST_CASE(points_move_properties_stay_and_holes_are_filled)
   BOOST_TEST((out.property<double>("time") == program.source.property<double>("time")));
   const Table filled = pcs::IO::read_points(program.path("filled.ply"));
   const double expected = double(program.number_in_hole) * 2 / 3;
-  BOOST_TEST(std::abs(double(filled.number_of_points()) - expected) < 0.3 * expected);
+  BOOST_TEST(std::abs(double(filled.number_of_points()) - expected) < 0.5 * expected);
   const Json report = Json::parse(program.content("report.json"));
   BOOST_TEST(report["plausible"] == true);
   BOOST_TEST(report["matched_points"] == number_of_pillar_points - filled.number_of_points());
