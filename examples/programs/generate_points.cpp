@@ -57,6 +57,8 @@ try {
   pcs::IO::Write_options options;
   options.number_of_points = n;
   options.keep_coordinate_types = true;
+  options.las_scale = {1e-7, 1e-7, 1e-7}; // the surface is 6 high
+  options.las_offset = {0, 0, 0};
   pcs::IO::Point_writer writer(argv[1], schema, options);
   Table chunk(schema);
   for (std::uint64_t first = 0; first < n; first += chunk_size) {
