@@ -88,7 +88,11 @@ set(skeleton_session
   scan/prepare_scan.h
   scan/thin_dense_points.h
   slices/section_skeleton.h)
-set(skeleton_clutter graph/Neighbor_graph.h layers/Stem_foot.h scan/Point_labels.h)
+set(skeleton_clutter
+  graph/Neighbor_graph.h
+  layers/Stem_foot.h
+  scan/Point_labels.h
+  scan/leave_out_strays.h)
 set(skeleton_layers graph/Neighbor_graph.h graph/shortest_paths.h)
 set(skeleton_axes graph/Neighbor_graph.h layers/cut_layers.h)
 set(skeleton_continuation axes/Axis_fit.h axes/Chain_options.h axes/remove_axes.h)
@@ -105,7 +109,8 @@ set(skeleton_forest
   graph/shortest_paths.h
   input/Session_hints.h
   layers/trace_layers.h
-  result/describe_tree.h)
+  result/describe_tree.h
+  scan/leave_out_strays.h)
 
 # ---- shape_space: orl_geodesic, Orl_shape_space
 set(root_shape_space

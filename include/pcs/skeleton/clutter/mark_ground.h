@@ -8,10 +8,10 @@
 #include <pcs/internal/median.h>
 #include <pcs/skeleton/clutter/Terrain.h>
 #include <pcs/skeleton/clutter/is_single_sheet.h>
-#include <pcs/skeleton/clutter/leave_out_strays.h>
 #include <pcs/skeleton/graph/Neighbor_graph.h>
 #include <pcs/skeleton/layers/Stem_foot.h>
 #include <pcs/skeleton/model/Scan.h>
+#include <pcs/skeleton/scan/leave_out_strays.h>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>

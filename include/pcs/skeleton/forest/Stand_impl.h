@@ -10,7 +10,6 @@
 #include <pcs/internal/progress.h>
 #include <pcs/skeleton/Session.h>
 #include <pcs/skeleton/Session_options.h>
-#include <pcs/skeleton/clutter/leave_out_strays.h>
 #include <pcs/skeleton/forest/Sparse_ground.h>
 #include <pcs/skeleton/forest/Stand.h>
 #include <pcs/skeleton/forest/Stand_options.h>
@@ -18,6 +17,7 @@
 #include <pcs/skeleton/forest/Thinned_points.h>
 #include <pcs/skeleton/model/Scan.h>
 #include <pcs/skeleton/model/Scan_frame.h>
+#include <pcs/skeleton/scan/leave_out_strays.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
 
-#include <pcs/skeleton/clutter/leave_out_strays.h>
+#include <pcs/skeleton/scan/leave_out_strays.h>
 #include <pcs/skeleton/scan/prepare_scan.h>
 
 #include <CGAL/tags.h>

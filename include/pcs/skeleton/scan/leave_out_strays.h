@@ -11,8 +11,8 @@
 //
 // as points of thin ground do. Otherwise, it is a stray point.
 
-#ifndef PCS_SKELETON_CLUTTER_LEAVE_OUT_STRAYS_H
-#define PCS_SKELETON_CLUTTER_LEAVE_OUT_STRAYS_H
+#ifndef PCS_SKELETON_SCAN_LEAVE_OUT_STRAYS_H
+#define PCS_SKELETON_SCAN_LEAVE_OUT_STRAYS_H
 
 #include <pcs/skeleton/model/Moments.h>
 #include <pcs/skeleton/model/Scan.h>
@@ -82,4 +82,4 @@ inline std::vector<std::uint8_t> leave_out_strays(const Scan& scan,
 } // namespace skeleton
 } // namespace pcs
 
-#endif // PCS_SKELETON_CLUTTER_LEAVE_OUT_STRAYS_H
+#endif // PCS_SKELETON_SCAN_LEAVE_OUT_STRAYS_H
