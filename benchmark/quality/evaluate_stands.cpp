@@ -43,6 +43,7 @@ struct Site
   double slope = 0;          ///< height / horizontal distance [-]
   double ground_density = 0; ///< points of the ground per square metre
   double shrub_density = 0;  ///< shrubs per square metre
+  double strays = 0;         ///< stray points below the ground / other points [-]
   std::size_t trees_per_side = 3;
   double distance = 4.5; ///< of trees
 };
@@ -148,6 +149,10 @@ Virtual_stand make_stand(const Site& site, std::uint64_t seed)
       stand.points.push_back({Point(p.x(), p.y(), ground(p.x(), p.y()) + size * uniform(0, 1))});
     }
   }
+  for (double k = site.strays * double(stand.points.size()); k >= 1; --k) {
+    const double x = uniform(low, high), y = uniform(low, high);
+    stand.points.push_back({Point(x, y, ground(x, y) - uniform(0.05, 3.05))});
+  }
   return stand;
 }
 
@@ -219,7 +224,7 @@ std::string percent(std::size_t part, std::size_t whole)
          " %";
 }
 
-int run(std::uint64_t seed, std::size_t count)
+int run(std::uint64_t seed, std::size_t count, double strays)
 {
   pcs_bench::Table table({"slope",
                           "ground / m2",
@@ -237,7 +242,7 @@ int run(std::uint64_t seed, std::size_t count)
       for (const double shrubs : {0.0, 0.3}) {
         Result r;
         for (std::size_t k = 0; k < count; ++k)
-          evaluate(make_stand({slope, density, shrubs}, seed + k), r);
+          evaluate(make_stand({slope, density, shrubs, strays}, seed + k), r);
         std::sort(r.diameter_errors.begin(), r.diameter_errors.end());
         const auto& e = r.diameter_errors;
         table.add({pcs_bench::number(slope, 2),
@@ -263,11 +268,15 @@ int main(int argc, char** argv)
   CLI::App app("Segments virtual stands on slopes, and compares the trees with the truth.");
   std::uint64_t seed = 1;
   std::size_t count = 2;
+  double strays = 0;
   app.add_option("--seed", seed, "seed of the first stand of each kind")->capture_default_str();
   app.add_option("--stands", count, "number of stands of each kind")->capture_default_str();
+  app.add_option("--strays", strays, "points down to 3 m below the ground, relative to all others")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   try {
-    return run(seed, count);
+    return run(seed, count, strays);
   } catch (const std::exception& e) {
     std::cerr << "evaluate_stands: " << e.what() << '\n';
     return 1;
