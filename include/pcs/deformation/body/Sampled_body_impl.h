@@ -112,14 +112,15 @@ double Sampled_body<ConcurrencyTag>::checked_extent(const std::vector<Vec3>& poi
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   }
-  const double extent = (0.5 * high - 0.5 * low).norm() * 2;
-  if (!(extent > 0))
+  const Vec3 half = 0.5 * high - 0.5 * low;
+  const double extent = half.norm() * 2;
+  if (low == high)
     throw Invalid_input("pcs deformation: all " + std::to_string(points.size()) +
                         " points coincide; at least two must differ");
   // Squares and their products must stay representable.
   if (!(extent > 1e-100 && extent < 1e100))
     throw Invalid_input("pcs deformation: the points extend over " +
-                        pcs::internal::to_text(extent) +
+                        pcs::internal::to_text(half.stableNorm() * 2) +
                         "; extents must lie between 1e-100 and 1e100");
   return extent;
 }
