@@ -116,7 +116,8 @@ void run_in_memory(const Options& options,
     note_splats(*splats, run);
   run.number_of_neighbors = options.number_of_neighbors;
   check_output(options.output, table.schema());
-  adapt_faces(faces, options.output, run);
+  adapt_faces(faces, options.output, run.warnings);
+  run.number_of_faces = faces ? faces->number_of_faces() : 0;
   if (!edit)
     edit = default_edit(table.points());
   run.edit = edit->source;

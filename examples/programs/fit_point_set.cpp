@@ -9,8 +9,10 @@
 #include "common/check_output.h"
 #include "common/run_program.h"
 #include "deformation/Normals.h"
+#include "deformation/adapt_faces.h"
 #include "fitting/read_landmarks.h"
 #include <pcs/IO/points/Mesh_faces.h>
+#include <pcs/IO/points/Point_schema.h>
 #include <pcs/IO/points/Point_table.h>
 #include <pcs/IO/points/Write_options.h>
 #include <pcs/IO/read_points.h>
@@ -21,12 +23,15 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <iostream>
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -50,8 +55,9 @@ struct Options
 const char* help()
 {
   return R"(The source keeps its points, their order and properties. The faces of a mesh in PLY,
-OFF or OBJ are kept in these formats. Normals nx, ny, nz follow. Lengths are fractions of the
-extent of the source, the diagonal of its bounding box.
+OFF or OBJ are kept in these formats. Normals nx, ny, nz follow. Of Gaussian splats, only
+positions and normals follow. Lengths are fractions of the extent of the source, the diagonal of
+its bounding box; a warning says if a few stray points determine it.
 
 Landmarks are known pairs of a source point, counted from 0, and its position on the target. Three
 or more determine the initial pose. JSON: [{"point": 12, "target": [x, y, z]}, ...]. All other
@@ -122,12 +128,13 @@ struct Match_map
   std::vector<std::ptrdiff_t>* values;
 };
 
-/// Deforms the points of the table, and its normals if they are valid.
+/// Deforms the points of the table, and its normals if they are valid; otherwise adds a warning.
 pcs::Fit_report fit_table(pcs::IO::Point_table& source,
                           const pcs::IO::Point_table& target,
                           const std::vector<pcs::Landmark>& landmarks,
                           const Options& options,
-                          std::vector<std::ptrdiff_t>& matches)
+                          std::vector<std::ptrdiff_t>& matches,
+                          std::vector<std::string>& warnings)
 {
   using Point = pcs::IO::Point_table::Point_3;
   using Vector = pcs::IO::Point_table::Vector_3;
@@ -138,7 +145,10 @@ pcs::Fit_report fit_table(pcs::IO::Point_table& source,
   Normal_vectors normals;
   if (source.has_normals())
     normals = source.normals();
-  const bool do_normals = !normals.empty() && !first_invalid(normals);
+  const std::optional<std::size_t> invalid = first_invalid(normals);
+  if (invalid)
+    warnings.push_back(invalid_normal_warning(*invalid));
+  const bool do_normals = !normals.empty() && !invalid;
   const auto np = pcs::parameters::point_map(Value_map<Point>{&source.points()})
                       .number_of_samples(options.number_of_samples)
                       .number_of_iterations(options.number_of_iterations)
@@ -211,6 +221,64 @@ pcs::IO::Point_table unmatched(const pcs::IO::Point_table& table,
   return table.select(indices);
 }
 
+/// Returns what of the source is not kept or does not follow; removes faces that the output cannot
+/// hold.
+std::vector<std::string> adapt_source(const pcs::IO::Point_schema& schema,
+                                      std::shared_ptr<pcs::IO::Mesh_faces>& faces,
+                                      const std::string& output)
+{
+  std::vector<std::string> warnings = schema.warnings;
+  if (schema.has("rot_0") && schema.has("scale_0"))
+    warnings.push_back("the rotations, scales and colours of Gaussian splats are left as they are; "
+                       "only positions and normals are fitted");
+  adapt_faces(faces, output, warnings);
+  return warnings;
+}
+
+/// Adds a warning if a few points are so far away that they determine the extent of the source, by
+/// which all lengths are measured.
+void warn_of_strays(const std::vector<pcs::IO::Point_table::Point_3>& points,
+                    std::vector<std::string>& warnings)
+{
+  constexpr double least_ratio = 0.05, share_of_strays = 0.01; // on each side of an axis
+  if (points.empty())
+    return;
+  double extents = 0, inner_extents = 0; // sums of squares
+  std::vector<double> values(points.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    std::transform(points.begin(), points.end(), values.begin(), [&](const auto& p) {
+      return p[axis];
+    });
+    std::sort(values.begin(), values.end());
+    const auto cut = static_cast<std::size_t>(share_of_strays * static_cast<double>(values.size()));
+    extents += std::pow(values.back() - values.front(), 2);
+    inner_extents += std::pow(values[values.size() - 1 - cut] - values[cut], 2);
+  }
+  if (!(inner_extents < least_ratio * least_ratio * extents))
+    return;
+  std::ostringstream text;
+  text << "a few points lie far away from all others and make the extent " << std::sqrt(extents)
+       << " instead of " << std::sqrt(inner_extents)
+       << ": lengths are fractions of it; remove these points";
+  warnings.push_back(text.str());
+}
+
+void warn(const std::string& file, const std::vector<std::string>& warnings)
+{
+  for (const std::string& warning : warnings)
+    std::cerr << "fit_point_set: warning: " << file << ": " << warning << '\n';
+}
+
+std::string plausibility_warning(const pcs::Fit_report& r, bool has_landmarks)
+{
+  std::ostringstream text;
+  text << "not plausible, " << r.number_of_matched << " of " << r.number_of_source_points
+       << " points are matched with a median residual of " << r.median_residual
+       << "; check the units and origins of both clouds"
+       << (has_landmarks ? " and the landmarks" : "; landmarks may help");
+  return text.str();
+}
+
 void run(const Options& options)
 {
   Distinct_files files;
@@ -230,17 +298,18 @@ void run(const Options& options)
   check_output(options.output, source.schema());
   if (!options.filled.empty())
     check_output(options.filled, source.schema());
+  std::vector<std::string> warnings = adapt_source(source.schema(), faces, options.output);
+  warn_of_strays(source.points(), warnings);
 
   std::vector<std::ptrdiff_t> matches;
-  const pcs::Fit_report report = fit_table(source, target, landmarks, options, matches);
+  const pcs::Fit_report report = fit_table(source, target, landmarks, options, matches, warnings);
+  warn(options.source, warnings);
   if (report.status == pcs::Status::numerical_failure)
     throw pcs::Invalid_input(options.source + ": a matrix could not be factorised; more --samples, "
-                                              "or another --stiffness, may help");
+                                              "or another --stiffness, may help, or a source "
+                                              "without points far away from all others");
   if (!report.is_plausible)
-    std::cerr << "fit_point_set: warning: " << options.output << ": not plausible, "
-              << report.number_of_matched << " of " << report.number_of_source_points
-              << " points are matched with a median residual of " << report.median_residual
-              << "; landmarks may help\n";
+    warn(options.output, {plausibility_warning(report, !landmarks.empty())});
   pcs::IO::Write_options write_options;
   write_options.faces = faces;
   pcs::IO::write_points(options.output, source, write_options);

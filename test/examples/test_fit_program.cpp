@@ -8,6 +8,8 @@
 #include <cmath>
 #include <cstddef>
 #include <examples/Program_run.h>
+#include <limits>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -51,6 +53,18 @@ void refuses(Fit_run& program, const std::string& arguments, const std::string& 
   BOOST_TEST(code == 1, arguments << ": exit code " << code);
   BOOST_TEST(program.err.find(word) != std::string::npos, word << " in " << program.err);
   BOOST_TEST(program.content("out.ply") == "an old file");
+}
+
+/// Returns an OFF file with a triangle of the first three points.
+std::string mesh_of(const std::vector<Table::Point_3>& points)
+{
+  std::ostringstream text;
+  text.precision(17);
+  text << "OFF\n" << points.size() << " 1 0\n";
+  for (const auto& p : points)
+    text << p.x() << ' ' << p.y() << ' ' << p.z() << '\n';
+  text << "3 0 1 2\n";
+  return text.str();
 }
 
 } // namespace
@@ -103,6 +117,83 @@ BOOST_AUTO_TEST_CASE(invalid_input_is_refused_and_writes_nothing)
   refuses(program, files + "--landmarks bad.json", "/0/point");
   program.write("far.csv", "99999,1,2,3\n");
   refuses(program, files + "--landmarks far.csv", "source point 99999");
+  refuses(program, files + "--landmarks .", "cannot be opened");
+  refuses(program, files + "--filled /dev/null", "a name without extension");
+  program.write("tiny.xyz", "0 0 0\n1e-200 0 0\n0 1e-200 0\n0 0 1e-200\n");
+  refuses(program,
+          "--source tiny.xyz --target target.ply --output out.ply",
+          "extend over 1.73205e-200");
+  refuses(program, "--source source.ply --target tiny.xyz --output out.ply", "Check the units");
+}
+
+BOOST_AUTO_TEST_CASE(byte_order_marks_and_extensions_in_capitals_are_read)
+{
+  Fit_run program;
+  program.write("a.csv", "\xEF\xBB\xBFpoint,x,y,z\n5,1001.1,-20.3,5.8\n");
+  BOOST_TEST(program.run(files + "--landmarks a.csv") == 0, program.err);
+  program.write("a.JSON", R"([{"point": 5, "target": [1001.1, -20.3, 5.8]}])");
+  BOOST_TEST(program.run(files + "--landmarks a.JSON") == 0, program.err);
+}
+
+BOOST_AUTO_TEST_CASE(what_does_not_follow_is_reported)
+{
+  Fit_run program;
+  const auto warns = [&](const std::string& arguments, const std::string& words) {
+    const int code = program.run(arguments);
+    BOOST_TEST(code == 0, arguments << ": " << program.err);
+    BOOST_TEST(program.err.find(words) != std::string::npos, words << " in " << program.err);
+  };
+  const std::string out = " --target target.ply --samples 50 --iterations 5 --output ";
+  program.write("mesh.off", mesh_of(program.source.points()));
+  warns("--source mesh.off" + out + "out.xyz", "mesh.off: the 1 faces of the mesh are left out");
+  BOOST_TEST(pcs::IO::read_points(program.path("out.xyz")).number_of_points() ==
+             number_of_pillar_points);
+
+  Table splats(program.source.points());
+  const std::vector<float> values(splats.number_of_points(), 1);
+  for (const char* name : {"rot_0", "rot_1", "rot_2", "rot_3", "scale_0", "scale_1", "scale_2"})
+    splats.add_property(name, values);
+  pcs::IO::write_points(program.path("splats.ply"), splats);
+  warns("--source splats.ply" + out + "out.ply", "of Gaussian splats are left as they are");
+
+  std::vector<float> normals(values);
+  normals[7] = std::numeric_limits<float>::quiet_NaN();
+  Table invalid(program.source.points());
+  for (const char* name : {"nx", "ny", "nz"})
+    invalid.add_property(name, normals);
+  pcs::IO::write_points(program.path("normals.ply"), invalid);
+  warns("--source normals.ply" + out + "out.ply", "the normal of point 7 is not finite");
+}
+
+BOOST_AUTO_TEST_CASE(points_that_spoil_the_extent_are_reported)
+{
+  Fit_run program;
+  const std::string words = "a few points lie far away from all others";
+  BOOST_TEST(program.run(files + "--iterations 5") == 0, program.err);
+  BOOST_TEST(program.err.find(words) == std::string::npos, program.err);
+  std::vector<Table::Point_3> points = program.source.points();
+  points.emplace_back(1e4, 0, 0);
+  pcs::IO::write_points(program.path("stray.ply"), Table(points));
+  const std::string arguments = "--source stray.ply --target target.ply --output out.ply ";
+  BOOST_TEST(program.run(arguments + "--iterations 5") == 0, program.err);
+  BOOST_TEST(program.err.find(words) != std::string::npos, program.err);
+}
+
+BOOST_AUTO_TEST_CASE(advice_names_units_and_given_landmarks)
+{
+  Fit_run program;
+  std::vector<Table::Point_3> millimetres;
+  for (const auto& p : program.source.points())
+    millimetres.emplace_back(1000 * p.x(), 1000 * p.y(), 1000 * p.z());
+  pcs::IO::write_points(program.path("mm.ply"), Table(millimetres));
+  const std::string other = "--source mm.ply --target target.ply --output out.ply ";
+  BOOST_TEST(program.run(other) == 0, program.err);
+  BOOST_TEST(program.err.find("check the units and origins of both clouds; landmarks may help") !=
+                 std::string::npos,
+             program.err);
+  program.write("a.csv", "0,1001,-20,6\n");
+  BOOST_TEST(program.run(other + "--landmarks a.csv") == 0, program.err);
+  BOOST_TEST(program.err.find("both clouds and the landmarks") != std::string::npos, program.err);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -6,6 +6,7 @@
 #define PCS_EXAMPLES_PROGRAMS_COMMON_CHECK_OUTPUT_H
 
 #include <pcs/IO/Point_writer.h>
+#include <pcs/IO/internal/file_format.h>
 #include <pcs/IO/points/Point_schema.h>
 #include <pcs/IO/points/Write_options.h>
 
@@ -21,8 +22,10 @@ inline void check_output(const std::string& path, const pcs::IO::Point_schema& s
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) &&
-      !std::filesystem::is_directory(status))
-    return; // opening a pipe would write to it
+      !std::filesystem::is_directory(status)) {
+    pcs::IO::internal::format_by_extension(path); // throws if there is none
+    return;                                       // opening a pipe would write to it
+  }
   pcs::IO::Write_options options;
   options.number_of_points = 0;
   options.las_scale = {1, 1, 1};

@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
@@ -32,6 +33,12 @@ inline std::optional<std::size_t> first_invalid(const Normal_vectors& normals)
     if (!is_finite(normals[i]))
       return i;
   return std::nullopt;
+}
+
+inline std::string invalid_normal_warning(std::uint64_t number)
+{
+  return "the normal of point " + std::to_string(number) +
+         " is not finite: all normals are left as they are";
 }
 
 /// Converts a value; rounds and clamps it if `T` is an integer type.

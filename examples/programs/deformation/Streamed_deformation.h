@@ -173,7 +173,8 @@ private:
       keeper.add(chunk, normals, handles, first);
     };
     check_count(for_each_chunk("reading", add, !m_options.is_points_only));
-    adapt_faces(m_faces, m_options.output, m_run);
+    adapt_faces(m_faces, m_options.output, m_run.warnings);
+    m_run.number_of_faces = m_faces ? m_faces->number_of_faces() : 0;
     m_kept = keeper.take(do_normals());
 
     if (!m_scan) {

@@ -195,12 +195,6 @@ inline void check_range(const Edit& edit, const pcs::IO::Point_table& table, std
                               " out of the range of numbers");
 }
 
-inline std::string invalid_normal_warning(std::uint64_t number)
-{
-  return "the normal of point " + std::to_string(number) +
-         " is not finite: all normals are left as they are";
-}
-
 } // namespace program
 
 #endif // PCS_EXAMPLES_PROGRAMS_DEFORMATION_RUN_SESSION_H

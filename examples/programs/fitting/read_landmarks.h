@@ -6,6 +6,7 @@
 #define PCS_EXAMPLES_PROGRAMS_FITTING_READ_LANDMARKS_H
 
 #include "common/Json_value.h"
+#include <pcs/IO/internal/extensions.h>
 #include <pcs/core/errors.h>
 #include <pcs/registration/Fit_options.h>
 
@@ -43,13 +44,15 @@ inline std::vector<pcs::Landmark> read_landmarks_json(const std::string& path)
 inline std::vector<pcs::Landmark> read_landmarks_csv(const std::string& path)
 {
   std::ifstream in(path);
-  if (!in)
+  if (!in || std::filesystem::is_directory(path))
     throw pcs::IO_error(path, "cannot be opened for reading");
   std::vector<pcs::Landmark> result;
   std::string line;
   for (std::size_t number = 1; std::getline(in, line); ++number) {
     if (!line.empty() && line.back() == '\r')
       line.pop_back();
+    if (number == 1 && line.compare(0, 3, "\xEF\xBB\xBF") == 0) // byte order mark
+      line.erase(0, 3);
     if (line.empty() || (number == 1 && line == "point,x,y,z"))
       continue;
     std::istringstream text(line);
@@ -68,7 +71,7 @@ inline std::vector<pcs::Landmark> read_landmarks_csv(const std::string& path)
 
 inline std::vector<pcs::Landmark> read_landmarks(const std::string& path)
 {
-  const bool is_json = std::filesystem::path(path).extension() == ".json";
+  const bool is_json = pcs::IO::internal::extension_of(path) == "json";
   const auto result = is_json ? read_landmarks_json(path) : read_landmarks_csv(path);
   if (result.empty())
     throw pcs::IO_error(path, "there are no landmarks");

@@ -224,7 +224,9 @@ inline void localize(const deformation::Local_frame& frame,
                           " are possible. Check the units and origins of both clouds");
   }
   if (std::all_of(points.begin(), points.end(), [&](const Vec3& p) { return p == points[0]; }))
-    throw Invalid_input(caller + ": all points of the target coincide");
+    throw Invalid_input(caller +
+                        ": all points of the target coincide, or extend over less than the "
+                        "rounding error of the source. Check the units of both clouds");
 }
 
 /// Makes normals unit vectors; null vectors remain.
