@@ -173,7 +173,8 @@ pcs::Skeleton_report extract(const std::string& input,
   slices.do_mark_support = !options.do_fit_all;
   if (options.do_use_all)
     slices.highest_count = 0;
-  const auto method = options.method == "chains"     ? pcs::Skeleton_method::chains
+  const auto method = options.method == "automatic"  ? pcs::Skeleton_method::automatic
+                      : options.method == "chains"   ? pcs::Skeleton_method::chains
                       : options.method == "sections" ? pcs::Skeleton_method::sections
                                                      : pcs::Skeleton_method::level_sets;
   const auto np = pcs::parameters::point_map(points)

@@ -133,9 +133,9 @@ public:
         \nptype model of `ReadablePropertyMap`, key: vertex descriptor, value: a point type
         \npdefault the bundled property of `Tree_skeleton`; needed for other graphs
       \np{skeleton_method} how branches are found
-        \nptype `Skeleton_method`: `chains`; `sections`, the published method \cite aiteanu2022; or
-            `level_sets`, for plants with leaf blades
-        \npdefault `chains`
+        \nptype `Skeleton_method`: `automatic`; `chains`; `sections`, the published method
+            \cite aiteanu2022; or `level_sets`, for plants with leaf blades
+        \npdefault `automatic`
       \np{slice_options} options of the method `sections`: how slices are cut, fitted and tilted,
           how sections are connected, and the radii of sparse branches
         \nptype `Slice_options`

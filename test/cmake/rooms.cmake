@@ -77,6 +77,7 @@ set(skeleton_session
   continuation/follow_thick_ends.h
   input/Session_hints.h
   layers/trace_layers.h
+  leaves/find_leaf_blades.h
   leaves/separate_leaves.h
   radii/refine_radii.h
   registration/register_stations.h
@@ -97,7 +98,7 @@ set(skeleton_layers graph/Neighbor_graph.h graph/shortest_paths.h)
 set(skeleton_axes graph/Neighbor_graph.h layers/cut_layers.h)
 set(skeleton_continuation axes/Axis_fit.h axes/Chain_options.h axes/remove_axes.h)
 set(skeleton_radii axes/Axis_fit.h axes/Axis_oval.h)
-set(skeleton_leaves graph/Neighbor_graph.h graph/shortest_paths.h)
+set(skeleton_leaves graph/Neighbor_graph.h graph/shortest_paths.h scan/Voxel_cells.h)
 set(skeleton_slices layers/cut_layers.h)
 set(skeleton_result Session.h input/caller_types.h)
 set(skeleton_forest

@@ -30,7 +30,7 @@ struct Skeleton_options
 {
   std::vector<std::string> inputs, also;
   std::string swc, mesh, leaves, cylinders, branches, tree_table, edges, points, report, folder;
-  std::string up = "z", method = "chains", fit, wood, stations,
+  std::string up = "z", method = "automatic", fit, wood, stations,
               given; // no fit: the default of the library
   std::vector<double> root, scanners, wood_values;
   double beam_milliradians = -1; // < 0: the default of the library
@@ -220,9 +220,10 @@ inline void declare(CLI::App& app, Skeleton_options& options)
       ->check(CLI::NonNegativeNumber);
   app.add_option("--method",
                  options.method,
-                 "how branches are found; `sections` is the published method [Aiteanu 2022], "
-                 "`level_sets` is for plants with leaf blades such as maize")
-      ->check(CLI::IsMember({"chains", "sections", "level_sets"}))
+                 "how branches are found; `automatic`: `level_sets` if the plant has leaf blades, "
+                 "such as maize, otherwise `chains`; `sections` is the published method [Aiteanu "
+                 "2022]")
+      ->check(CLI::IsMember({"automatic", "chains", "sections", "level_sets"}))
       ->capture_default_str();
   app.add_option("--fit",
                  options.fit,
@@ -395,7 +396,7 @@ inline void check(const Skeleton_options& options)
   refuse(options.do_use_all && !has_sections, "--all-points", "--method sections");
   refuse(options.do_fit_all && !has_sections, "--no-support", "--method sections");
   refuse(options.do_estimate_normals && !has_sections, "--estimate-normals", "--method sections");
-  const bool has_chains = options.method == "chains";
+  const bool has_chains = options.method == "chains" || options.method == "automatic";
   refuse(options.do_remove_leaves && !has_chains, "--remove-leaves", "--method chains");
   for (const std::string& option : options.given_numbers)
     refuse(!has_sections, option.c_str(), "--method sections");

@@ -23,6 +23,7 @@ inline std::string in_options(std::string sentence)
         std::make_pair("do_remove_leaves(false)", "--keep-leaves"),
         std::make_pair("root_position", "--root"),
         std::make_pair("skeleton_method(level_sets)", "--method level_sets"),
+        std::make_pair("skeleton_method(chains)", "--method chains"),
         std::make_pair("breast height, which", "--breast-height, which")}) {
     const std::size_t at = sentence.find(parameter);
     if (at != std::string::npos)
@@ -77,12 +78,28 @@ inline nlohmann::ordered_json to_json(const pcs::Skeleton_errors& e)
           {"volume_by_size", e.volume_by_size}};
 }
 
+/// Returns the value of the option `--method`.
+inline const char* name_of(pcs::Skeleton_method method)
+{
+  switch (method) {
+  case pcs::Skeleton_method::chains:
+    return "chains";
+  case pcs::Skeleton_method::sections:
+    return "sections";
+  case pcs::Skeleton_method::level_sets:
+    return "level_sets";
+  default:
+    return "automatic";
+  }
+}
+
 /// Returns all members of the report; lengths are in the unit of the input.
 inline nlohmann::ordered_json to_json(const std::string& input, const pcs::Skeleton_report& r)
 {
   nlohmann::ordered_json json;
   json["input"] = input;
   json["status"] = pcs::to_string(r.status);
+  json["method"] = name_of(r.method);
   json["points"] = {{"all", r.number_of_points},
                     {"duplicates", r.number_of_duplicates},
                     {"scan", r.number_of_scan_points},
@@ -99,6 +116,7 @@ inline nlohmann::ordered_json to_json(const std::string& input, const pcs::Skele
   json["coordinate_step"] = r.coordinate_step;
   json["noise"] = r.noise;
   json["residual"] = r.residual;
+  json["blade_fraction"] = r.blade_fraction;
   json["nodes"] = r.number_of_nodes;
   json["branches"] = r.number_of_branches;
   json["unreachable_branches"] = r.number_of_unreached_branches;

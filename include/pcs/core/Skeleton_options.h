@@ -20,6 +20,7 @@ constexpr double default_beam_width = 0.0003;
 //! \ingroup PkgPcsSkeletonRef
 //! how branches are found
 enum class Skeleton_method {
+  automatic, ///< `level_sets` if the plant has leaf blades, otherwise `chains`
   chains,    ///< axes are fitted to chains of geodesic level-set components
   sections,  ///< as published: cross-sections at centers of curvature, and spanning trees elsewhere
   level_sets ///< centers of geodesic level sets, for plants with leaf blades such as maize

@@ -83,7 +83,7 @@ struct Skeleton_report
 {
   //! `converged`; `nothing_to_do` if no branch was found; `cancelled`
   Status status = Status::nothing_to_do;
-  Skeleton_method method = Skeleton_method::chains; ///< as given by the caller
+  Skeleton_method method = Skeleton_method::chains; ///< that was used; never `automatic`
 
   std::size_t number_of_points = 0; ///< of the input [count]
   //! points that coincide with another point within the noise; in dense scans, these are all points
@@ -132,6 +132,8 @@ struct Skeleton_report
   //! poor fit [L]
   double residual = 0;
   double density = 0; ///< points per surface area of the branches; 0: unknown [1/L^2]
+  //! fraction of the points on leaf blades, if these decided on the method; otherwise 0 [-]
+  double blade_fraction = 0;
 
   //! from the root to the highest node or leaf, along the up direction [L]
   double height = 0;
@@ -243,6 +245,11 @@ inline void warn_of_shape(const Skeleton_report& r, std::vector<std::string>& se
   // spacing / trunk diameter: above this ratio, volumes may be several times too large; real scans
   // have at most 0.2 [-]
   constexpr double max_spacing = 1.0 / 3;
+  if (r.blade_fraction > 0)
+    sentences.push_back(short_text(std::round(100 * r.blade_fraction)) +
+                        " % of the points lie on sheets that are large compared with the plant, as "
+                        "leaf blades are: each has one axis, and diameters and volume are those of "
+                        "flat sections (skeleton_method(chains) fits cylinders to wood)");
   const auto& trunk = r.by_order.front();
   const double diameter = 2 * std::sqrt(trunk.volume / (pcs::internal::pi * trunk.length));
   if (r.status == Status::converged && r.method != Skeleton_method::level_sets && // no surfaces
@@ -292,13 +299,17 @@ inline double jackknife_factor(double fraction)
   return fraction > 0 && fraction < 1 ? std::max(1.0, std::sqrt(fraction / (1 - fraction))) : 1;
 }
 
-/// Adds a warning about values that differ between resampled copies: if two standard deviations
-/// exceed 1 % of the height, 2 % of the diameter at breast height, 5 % of the length of the trunk,
-/// 5 % of the volume, or 4 % of the breast height for the position of the root.
+/// Adds a warning about values that may differ between nearly identical scans by more than 1 % of
+/// the height, 2 % of the diameter at breast height, 5 % of the length of the trunk, 5 % of the
+/// volume, or 4 % of the breast height for the position of the root.
 inline void warn_of_spread(const Skeleton_report& r, std::vector<std::string>& sentences)
 {
-  constexpr double max_height = 0.005, max_diameter = 0.01, max_trunk = 0.025, max_volume = 0.025;
-  constexpr double max_root = 0.02; // of the breast height [-]
+  // Two values differ by less than this number of standard deviations in 95 % of the cases:
+  // Student's t for deviations among five values, times sqrt(2) [-]
+  constexpr double factor = 3.93;
+  constexpr double max_height = 0.01 / factor, max_diameter = 0.02 / factor;
+  constexpr double max_trunk = 0.05 / factor, max_volume = 0.05 / factor;
+  constexpr double max_root = 0.04 / factor; // of the breast height [-]
   const Skeleton_spread& s = r.spread;
   std::string list;
   const auto add = [&](const char* name, double deviation, double value, double limit) {
@@ -330,7 +341,7 @@ inline void warn_of_spread(const Skeleton_report& r, std::vector<std::string>& s
     list +=
         (list.empty() ? "" : ", ") + std::string("position of the root +- ") + short_text(s.root);
   if (!list.empty())
-    sentences.push_back("resampled copies of this scan give different trees (one standard "
+    sentences.push_back("resampled copies of this scan give different values (one standard "
                         "deviation): " +
                         list);
 }

@@ -60,8 +60,9 @@ private:
   bool are_comparable() const;
   double distance_from_copies(const Session& session) const;
 
-  Scan_points m_scan;    ///< empty without copies
-  Session_hints m_hints; ///< without stations and normals
+  Scan_points m_scan;          ///< empty without copies
+  Session_hints m_hints;       ///< without stations and normals; the method of the scan, once known
+  double m_blade_fraction = 0; ///< by which the method was chosen [-]
   std::size_t m_number_of_copies = 0, m_number_of_completed_copies = 0;
   Copy_descriptors m_copies;
   std::unique_ptr<Session> m_session;

@@ -9,6 +9,7 @@
 #include <pcs/skeleton/Resampled_session.h>
 #include <pcs/skeleton/Session_impl.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
 #include <limits>
@@ -67,6 +68,8 @@ bool Resampled_session<ConcurrencyTag>::complete(const std::function<bool(double
     return false;
   if (!has_copies() || m_session->report().status != Status::converged)
     return true;
+  m_hints.method = m_session->report().method;
+  m_blade_fraction = m_session->report().blade_fraction;
   pcs::internal::Progress progress(callback);
   progress.stage(internal::end_of_stages, internal::end_of_copies);
   if (!extract_copies(progress))
@@ -92,6 +95,7 @@ Skeleton_report Resampled_session<ConcurrencyTag>::report() const
   report.spread.number_of_empty_copies = m_number_of_completed_copies - m_copies.size();
   report.spread.is_leaf_removal_changed = m_is_leaf_removal_changed;
   report.spread.is_displaced = m_is_displaced;
+  report.blade_fraction = std::max(report.blade_fraction, m_blade_fraction);
   if (m_is_displaced) { // displaced coordinates are not rounded
     report.coordinate_step = m_coordinate_step;
     report.is_single_precision = m_is_single_precision;

@@ -77,6 +77,7 @@ bool Session<ConcurrencyTag>::find_paths(pcs::internal::Progress& progress)
   Linked_parts linked;
   if (!internal::remove_ground(s, links, linked, progress))
     return false;
+  internal::find_blades(s);
   if (s.options.do_trace_paths)
     internal::trace_layers(s, links, linked);
   return internal::finish(s, Stage::paths, internal::end_of_paths, progress);
@@ -91,6 +92,8 @@ bool Session<ConcurrencyTag>::fit_axes(pcs::internal::Progress& progress)
   const pcs::internal::Stage_timer timer(s.report.seconds.axes);
   if (s.root.empty()) // without a root, no point belongs to a tree
     return internal::finish(s, Stage::axes, internal::end_of_axes, progress);
+  if (s.options.method == Skeleton_method::automatic && !internal::choose_method(s, progress))
+    return false;
   if (s.has_axes() && !internal::fit_all_axes(s, progress))
     return false;
   if (s.options.method == Skeleton_method::sections && !internal::find_sections(s, progress))

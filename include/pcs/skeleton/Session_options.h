@@ -11,6 +11,7 @@
 #include <pcs/skeleton/continuation/follow_thick_ends.h>
 #include <pcs/skeleton/input/Session_hints.h>
 #include <pcs/skeleton/layers/trace_layers.h>
+#include <pcs/skeleton/leaves/find_leaf_blades.h>
 #include <pcs/skeleton/leaves/separate_leaves.h>
 #include <pcs/skeleton/radii/refine_radii.h>
 #include <pcs/skeleton/registration/register_stations.h>
@@ -39,6 +40,7 @@ struct Session_options : Session_hints
   Axis_options axes;
   Thick_end_options thick_ends;
   Leaf_options leaves;
+  Blade_options blades;
   Branching_options branching;
   Radius_options radii;
   Stem_options stems;

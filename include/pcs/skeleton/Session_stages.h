@@ -123,6 +123,23 @@ void start_labels(Session_state<Tag>& s)
   s.labels.start(s.is_wood);
 }
 
+template <class Tag>
+void set_method(Session_state<Tag>& s, Skeleton_method method)
+{
+  s.options.method = s.report.method = method;
+  if (method == Skeleton_method::level_sets)
+    s.options.layers.thickness = blade_layer_thickness;
+}
+
+/// Returns whether leaf blades can be told from other sheets, and no option says there is wood.
+template <class Tag>
+bool may_have_blades(const Session_state<Tag>& s)
+{
+  const Session_options& o = s.options;
+  return o.do_mark_ground && o.do_trace_paths && !o.given &&
+         o.leaf_removal == Leaf_removal::where_found;
+}
+
 /// Expresses the hints in coordinates of the scan.
 template <class Tag>
 void localize_hints(Session_state<Tag>& s)
@@ -137,8 +154,9 @@ void localize_hints(Session_state<Tag>& s)
     if (!o.root)
       o.root = o.given->points.front();
   }
-  if (o.method == Skeleton_method::level_sets)
-    o.layers.thickness = blade_layer_thickness;
+  if (o.method == Skeleton_method::automatic && !may_have_blades(s))
+    o.method = Skeleton_method::chains;
+  set_method(s, o.method);
   for (Vec3& scanner : o.scanners)
     scanner = frame.to_local(scanner);
 }
@@ -209,6 +227,45 @@ bool remove_ground(Session_state<Tag>& s,
     return false;
   if (s.clutter.remove_ground_and_faces([&] { return used_links(s); }, links))
     link(Known_root::foot_on_ground);
+  return true;
+}
+
+// ---- method
+
+/// Finds leaf blades if they decide on the method; without them, it is `chains`.
+template <class Tag>
+void find_blades(Session_state<Tag>& s)
+{
+  if (s.options.method != Skeleton_method::automatic)
+    return;
+  s.blades = find_leaf_blades<Tag>(s.scan, s.is_used(), s.options.blades);
+  const bool is_rounded = s.report.coordinate_step > s.scan.frame.unit * s.blades.cell;
+  if (is_rounded || s.blades.share < s.options.blades.share) // rounded points lie in planes
+    set_method(s, Skeleton_method::chains);
+}
+
+/// Chooses the method of a plant with sheets: `level_sets`, unless thick axes explain the sheets,
+/// like the bark of a log. Returns `false` if `progress` stopped it.
+template <class Tag>
+bool choose_method(Session_state<Tag>& s, pcs::internal::Progress& progress)
+{
+  bool is_running = true;
+  const Axis_set axes = skeleton::fit_axes<Tag>(s.scan, s.layers, s.options.axes, [&](double) {
+    return is_running = progress(end_of_paths);
+  });
+  if (!is_running)
+    return false;
+  const double share = share_without_axes(s.scan, axes, s.blades, s.options.blades);
+  if (share < s.options.blades.share) {
+    set_method(s, Skeleton_method::chains);
+    return true;
+  }
+  set_method(s, Skeleton_method::level_sets);
+  s.report.blade_fraction = share;
+  Links links = used_links(s);
+  Linked_parts linked;
+  link_used(s, links, Known_root::foot_on_ground, linked);
+  trace_layers(s, links, linked);
   return true;
 }
 

@@ -43,6 +43,7 @@ struct Session_state
   std::vector<std::uint8_t> may_be_tree; ///< for a given skeleton: the used points before removals
   Clutter_removal<ConcurrencyTag> clutter{scan, options.clutter, labels, report};
   std::vector<Index> root;
+  Leaf_blades blades; ///< if the method is not known yet
   Shortest_paths paths;
   Layer_tree layers;
   Axis_set axes;

@@ -160,6 +160,7 @@ void read_method(const NamedParameters& np, const std::string& caller, Session_h
   static_assert(is_parameter_v<Slice_options, NamedParameters, tags::slice_options_t>,
                 "pcs::extract_tree_skeleton(): named parameter `slice_options` must be a "
                 "pcs::Slice_options");
+  hints.method = Skeleton_method::automatic;
   read_parameter(np, tags::skeleton_method, hints.method);
   read_parameter(np, tags::slice_options, hints.slices);
   check_slices(hints.slices, caller);
@@ -248,7 +249,8 @@ Input_options read_skeleton_options(const NamedParameters& np, const std::string
   internal::read_scanners(np, caller, hints);
   internal::read_given_skeleton(np, caller, hints);
   internal::read_method(np, caller, hints);
-  pcs::internal::check(!hints.given || hints.method == Skeleton_method::chains,
+  pcs::internal::check(!hints.given || hints.method == Skeleton_method::chains ||
+                           hints.method == Skeleton_method::automatic,
                        caller,
                        "`given_skeleton` can only be used with `skeleton_method(chains)`");
   hints.do_register_stations = true;
