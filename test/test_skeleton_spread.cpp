@@ -177,6 +177,25 @@ BOOST_AUTO_TEST_CASE(copies_without_a_tree_are_named)
   BOOST_TEST(all.find("4 resampled copies of this scan show no tree") != std::string::npos, all);
 }
 
+BOOST_AUTO_TEST_CASE(values_that_may_differ_by_more_than_the_goals_are_named)
+{
+  pcs::Skeleton_report report;
+  report.status = pcs::Status::converged;
+  report.by_order.push_back({1, 10, 0.1});
+  report.total = report.by_order.front();
+  report.height = 10;
+  report.spread.number_of_copies = 4;
+  const auto names_volume = [&report](double deviation) {
+    report.spread.volume = deviation * report.total.volume;
+    std::string all;
+    for (const std::string& sentence : pcs::warnings(report))
+      all += sentence + '\n';
+    return all.find("different values (one standard deviation): volume") != std::string::npos;
+  };
+  BOOST_TEST(!names_volume(0.012)); // 3.93 times the deviation is 4.7 %
+  BOOST_TEST(names_volume(0.013));  // 5.1 %
+}
+
 BOOST_AUTO_TEST_CASE(the_spread_does_not_depend_on_threads)
 {
   const Cloud points = clear_tree();
