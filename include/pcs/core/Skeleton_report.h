@@ -132,7 +132,7 @@ struct Skeleton_report
   //! poor fit [L]
   double residual = 0;
   double density = 0; ///< points per surface area of the branches; 0: unknown [1/L^2]
-  //! fraction of the points on leaf blades, if these decided on the method; otherwise 0 [-]
+  //! fraction of the scanned area on leaf blades, if these decided on the method; otherwise 0 [-]
   double blade_fraction = 0;
 
   //! from the root to the highest node or leaf, along the up direction [L]
@@ -246,10 +246,11 @@ inline void warn_of_shape(const Skeleton_report& r, std::vector<std::string>& se
   // have at most 0.2 [-]
   constexpr double max_spacing = 1.0 / 3;
   if (r.blade_fraction > 0)
-    sentences.push_back(short_text(std::round(100 * r.blade_fraction)) +
-                        " % of the points lie on sheets that are large compared with the plant, as "
-                        "leaf blades are: each has one axis, and diameters and volume are those of "
-                        "flat sections (skeleton_method(chains) fits cylinders to wood)");
+    sentences.push_back(
+        short_text(std::round(100 * r.blade_fraction)) +
+        " % of the scanned area are sheets that are large compared with the plant, as "
+        "leaf blades are: each has one axis, and diameters and volume are those of "
+        "flat sections (skeleton_method(chains) fits cylinders to wood)");
   const auto& trunk = r.by_order.front();
   const double diameter = 2 * std::sqrt(trunk.volume / (pcs::internal::pi * trunk.length));
   if (r.status == Status::converged && r.method != Skeleton_method::level_sets && // no surfaces

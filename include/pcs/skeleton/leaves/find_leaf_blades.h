@@ -49,17 +49,17 @@ struct Blade_options
   double rough = 0.15;   ///< largest deviation from the quadric, in radii of the sheet [-]
   double curved = 0.35;  ///< largest curvature, in inverse radii of the sheet [-]
   double touching = 2.2; ///< largest distance of connected means, in sides of a cell [-]
-  double large = 0.1;    ///< least size of a blade, in sizes of the plant [-]
+  double large = 0.12;   ///< least size of a blade, in sizes of the plant [-]
   //! means that are tested first, at most [count]; the others are tested if there are sheets ...
   std::size_t sample = 2000;
-  double share = 0.02; ///< ... at this fraction of the means [-], the least fraction on blades
+  double share = 0.02; ///< ... at this fraction of the means, the least fraction on blades [-]
 };
 
 /// The points of a plant that lie on leaf blades.
 struct Leaf_blades
 {
   std::vector<Index> points; ///< in increasing order
-  double share = 0;          ///< fraction of all points [-]
+  double share = 0;          ///< fraction of the occupied cells, a measure of area [-]
   double radius = 0;         ///< of a sheet [L]
   double cell = 0;           ///< side of the cells [L]
 };
@@ -87,27 +87,32 @@ public:
       m_means[c] /= double(m_cells.count[c]);
   }
 
-  double radius() const { return m_radius; }
-  double side() const { return m_radius / m_rules.cells; }
-
-  /// Returns for each point whether it lies on a blade; empty if there are no blades.
+  /// Finds the points on blades; their indices are those of `points`.
   template <class ConcurrencyTag>
-  std::vector<std::uint8_t> find(ConcurrencyTag) const
+  Leaf_blades find(ConcurrencyTag) const
   {
+    Leaf_blades blades;
+    blades.radius = m_radius;
+    blades.cell = side();
     const neighborhood::Nearest_neighbors neighbors(m_means);
     const std::size_t step = (m_means.size() + m_rules.sample - 1) / m_rules.sample;
-    const std::vector<std::uint8_t> some = find_sheets<ConcurrencyTag>(neighbors, step);
-    if (double(std::count(some.begin(), some.end(), 1)) < m_rules.share * double(some.size()))
-      return {};
+    const auto share_of = [](const std::vector<std::uint8_t>& flags) {
+      return double(std::count(flags.begin(), flags.end(), 1)) / double(flags.size());
+    };
+    if (share_of(find_sheets<ConcurrencyTag>(neighbors, step)) < m_rules.share)
+      return blades;
     const std::vector<std::uint8_t> is_blade =
         find_blades(neighbors, find_sheets<ConcurrencyTag>(neighbors, 1));
-    std::vector<std::uint8_t> result;
-    for (const Index c : m_cells.cell_of_point)
-      result.push_back(is_blade[c]);
-    return result;
+    blades.share = share_of(is_blade);
+    for (Index i = 0; i < m_cells.cell_of_point.size(); ++i)
+      if (is_blade[m_cells.cell_of_point[i]])
+        blades.points.push_back(i);
+    return blades;
   }
 
 private:
+  double side() const { return m_radius / m_rules.cells; }
+
   /// Returns for every mean with an index divisible by `step` whether it lies on a sheet.
   template <class ConcurrencyTag>
   std::vector<std::uint8_t> find_sheets(const neighborhood::Nearest_neighbors& neighbors,
@@ -203,7 +208,6 @@ Leaf_blades find_leaf_blades(const Scan& scan,
                              const std::vector<std::uint8_t>& is_used,
                              const Blade_options& rules = {})
 {
-  Leaf_blades blades;
   std::vector<Index> used;
   std::vector<Vec3> points;
   Moments moments;
@@ -215,19 +219,15 @@ Leaf_blades find_leaf_blades(const Scan& scan,
     }
   const double size = used.empty() ? 0 : std::sqrt(std::max(0.0, moments.covariance().trace()));
   if (!(size > 0))
-    return blades;
-  const internal::Blade_finder finder(ConcurrencyTag(), points, size, rules);
-  const std::vector<std::uint8_t> is_blade = finder.find(ConcurrencyTag());
-  for (std::size_t k = 0; k < is_blade.size(); ++k)
-    if (is_blade[k])
-      blades.points.push_back(used[k]);
-  blades.share = double(blades.points.size()) / double(used.size());
-  blades.radius = finder.radius();
-  blades.cell = finder.side();
+    return {};
+  Leaf_blades blades =
+      internal::Blade_finder(ConcurrencyTag(), points, size, rules).find(ConcurrencyTag());
+  for (Index& i : blades.points)
+    i = used[i];
   return blades;
 }
 
-/// Returns the fraction of all points that lie on blades without a thick axis behind them [-].
+/// Returns the fraction of the occupied cells on blades without a thick axis behind them [-].
 /// O(points).
 inline double share_without_axes(const Scan& scan,
                                  const Axis_set& axes,
