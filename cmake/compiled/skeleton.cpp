@@ -9,15 +9,14 @@
 
 template class pcs::skeleton::Session<CGAL::Sequential_tag>;
 template class pcs::skeleton::Resampled_session<CGAL::Sequential_tag>;
-template bool
-pcs::skeleton::find_trees<CGAL::Sequential_tag>(const std::vector<pcs::skeleton::Vec3>&,
-                                                const pcs::skeleton::Session_hints&,
-                                                pcs::internal::Progress&,
-                                                pcs::skeleton::Stand&);
+template bool pcs::skeleton::find_trees<CGAL::Sequential_tag>(const pcs::skeleton::Read_input&,
+                                                              const pcs::skeleton::Session_hints&,
+                                                              pcs::internal::Progress&,
+                                                              pcs::skeleton::Stand&);
 #ifdef CGAL_LINKED_WITH_TBB
 template class pcs::skeleton::Session<CGAL::Parallel_tag>;
 template class pcs::skeleton::Resampled_session<CGAL::Parallel_tag>;
-template bool pcs::skeleton::find_trees<CGAL::Parallel_tag>(const std::vector<pcs::skeleton::Vec3>&,
+template bool pcs::skeleton::find_trees<CGAL::Parallel_tag>(const pcs::skeleton::Read_input&,
                                                             const pcs::skeleton::Session_hints&,
                                                             pcs::internal::Progress&,
                                                             pcs::skeleton::Stand&);

@@ -148,11 +148,11 @@ inline std::vector<std::string> warnings(const Segmentation_report& r)
 namespace internal {
 
 /// Writes the tree of each point, and the number of points and the height of each tree.
-template <class PointRange, class PointTreeMap>
-void write_trees(const std::vector<skeleton::Vec3>& input,
-                 const skeleton::Stand& stand,
+template <class PointRange, class PointMap, class PointTreeMap>
+void write_trees(const skeleton::Stand& stand,
                  const skeleton::Vec3& up,
                  PointRange& points,
+                 const PointMap& point_map,
                  PointTreeMap point_tree_map,
                  Segmentation_report& report)
 {
@@ -168,7 +168,8 @@ void write_trees(const std::vector<skeleton::Vec3>& input,
     else {
       Segmented_tree& found = report.trees[tree];
       ++found.number_of_points;
-      found.height = std::max(found.height, up.dot(input[i] - stand.trees[tree].foot));
+      const skeleton::Vec3 p = skeleton::internal::to_vec3(get(point_map, *it));
+      found.height = std::max(found.height, up.dot(p - stand.trees[tree].foot));
     }
     put(point_tree_map,
         *it,
@@ -272,18 +273,20 @@ Segmentation_report segment_trees(PointRange& points,
     const auto point_map = internal::choose(np,
                                             CGAL::internal_np::point_map,
                                             CGAL::Identity_property_map<std::decay_t<Element>>());
-    const std::vector<skeleton::Vec3> input =
-        skeleton::internal::read_input(points, point_map, caller);
-    skeleton::check_input(input, hints, caller);
+    const auto read = [&] {
+      std::vector<skeleton::Vec3> input = skeleton::internal::read_input(points, point_map, caller);
+      skeleton::check_input(input, hints, caller);
+      return input;
+    };
     internal::Progress progress(options.callback);
-    report.number_of_points = input.size();
+    report.number_of_points = static_cast<std::size_t>(std::end(points) - std::begin(points));
     report.breast_height = hints.breast_height;
     skeleton::Stand forest;
-    if (!skeleton::find_trees<ConcurrencyTag>(input, hints, progress, forest)) {
+    if (!skeleton::find_trees<ConcurrencyTag>(read, hints, progress, forest)) {
       report.status = Status::cancelled;
       return report;
     }
-    internal::write_trees(input, forest, hints.up, points, point_tree_map, report);
+    internal::write_trees(forest, hints.up, points, point_map, point_tree_map, report);
     report.status = report.trees.empty() ? Status::nothing_to_do : Status::converged;
     report.seconds = watch.lap();
   }

@@ -9,6 +9,7 @@
 
 #include <CGAL/tags.h>
 
+#include <boost/graph/adjacency_list.hpp>
 #include <boost/graph/connected_components.hpp>
 #include <boost/graph/dijkstra_shortest_paths.hpp>
 #include <boost/property_map/function_property_map.hpp>
@@ -78,10 +79,32 @@ std::vector<Index> least_of_parts(const std::vector<Index>& part)
   return result;
 }
 
-void check_paths(const Scan& scan, const Neighbor_graph& graph, const std::vector<Index>& sources)
+using Boost_graph = boost::adjacency_list<boost::vecS, boost::vecS, boost::directedS>;
+
+Boost_graph to_boost(const Neighbor_graph& graph)
 {
-  const pcs::skeleton::Shortest_paths found = shortest_paths(scan, graph, sources);
-  using Edge = boost::graph_traits<Neighbor_graph>::edge_descriptor;
+  Boost_graph result(graph.number_of_points());
+  for (Index v = 0; v < graph.number_of_points(); ++v)
+    for (const Index* w = graph.begin(v); w != graph.end(v); ++w)
+      add_edge(v, *w, result);
+  return result;
+}
+
+bool are_equal(const Neighbor_graph& a, const Neighbor_graph& b)
+{
+  bool are = a.number_of_points() == b.number_of_points();
+  for (Index v = 0; are && v < a.number_of_points(); ++v)
+    are = std::equal(a.begin(v), a.end(v), b.begin(v), b.end(v));
+  return are;
+}
+
+void check_paths(const Scan& scan,
+                 const Neighbor_graph& neighbors,
+                 const std::vector<Index>& sources)
+{
+  const pcs::skeleton::Shortest_paths found = shortest_paths(scan, neighbors, sources);
+  const Boost_graph graph = to_boost(neighbors);
+  using Edge = boost::graph_traits<Boost_graph>::edge_descriptor;
   const auto cost = boost::make_function_property_map<Edge, double>([&](const Edge& e) {
     return pcs::skeleton::step_cost(scan,
                                     static_cast<Index>(source(e, graph)),
@@ -150,7 +173,7 @@ BOOST_AUTO_TEST_CASE(parts_are_those_of_boost)
   const Sheets s(3, 25000, 40);
   Links links = pcs::skeleton::neighbor_links<Any_tag>(s.scan, s.is_used, {});
   BOOST_TEST(links.size() > 3u * (1 << 17)); // several blocks
-  const Neighbor_graph graph = pcs::skeleton::graph_of(s.scan.size(), links);
+  const Boost_graph graph = to_boost(pcs::skeleton::graph_of(s.scan.size(), links));
   std::vector<Index> component(s.scan.size());
   boost::connected_components(
       graph,
@@ -181,14 +204,22 @@ BOOST_AUTO_TEST_CASE(links_and_gaps_make_one_graph)
     const auto at = all.begin() + static_cast<std::ptrdiff_t>(cut);
     const Links first(all.begin(), at), second(at, all.end());
     const Neighbor_graph graph = pcs::skeleton::graph_of(s.scan.size(), first, second);
-    BOOST_TEST(num_edges(graph) == 2 * all.size());
-    for (Index v = 0; v < s.scan.size(); ++v) {
-      const auto [begin, end] = adjacent_vertices(v, graph);
-      const auto [other_begin, other_end] = adjacent_vertices(v, expected);
-      BOOST_TEST(std::equal(begin, end, other_begin, other_end));
-    }
+    BOOST_TEST(graph.number_of_edges() == 2 * all.size());
+    BOOST_TEST(are_equal(graph, expected));
   }
-  BOOST_TEST(num_edges(pcs::skeleton::graph_of(3, Links())) == 0u);
+  std::vector<std::vector<Index>> rows(s.scan.size());
+  for (const Link& l : all) {
+    rows[l.first].push_back(l.second);
+    rows[l.second].push_back(l.first);
+  }
+  for (Index v = 0; v < rows.size(); ++v)
+    BOOST_TEST(std::equal(rows[v].begin(), rows[v].end(), expected.begin(v), expected.end(v)));
+  const Links gaps{all.front(), all.back()};
+  const pcs::skeleton::Neighbor_link_flags flags(Any_tag(), s.scan, s.is_used, {});
+  BOOST_TEST(flags.count(0, s.scan.size()) == all.size());
+  BOOST_TEST(are_equal(pcs::skeleton::graph_of(flags, gaps),
+                       pcs::skeleton::graph_of(s.scan.size(), all, gaps)));
+  BOOST_TEST(pcs::skeleton::graph_of(3, Links()).number_of_edges() == 0u);
 }
 
 BOOST_AUTO_TEST_CASE(shortest_paths_are_those_of_boost)

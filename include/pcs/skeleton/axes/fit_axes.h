@@ -329,6 +329,20 @@ std::vector<Index> nearest_to_axes(const Scan& scan,
   return source;
 }
 
+/// Returns the level sets of the points of `is_used`, along the paths from the points nearest to
+/// the axes.
+template <class ConcurrencyTag>
+Layer_tree layers_of_rest(const Scan& scan,
+                          const Axis_set& set,
+                          const std::vector<std::uint8_t>& is_used,
+                          const Link_rule& rule)
+{
+  const Links links = neighbor_links<ConcurrencyTag>(scan, is_used, rule);
+  const std::vector<Index> sources = nearest_to_axes<ConcurrencyTag>(scan, set, is_used, links);
+  const Shortest_paths paths = shortest_paths(scan, graph_of(scan.size(), links), sources);
+  return layer_tree<ConcurrencyTag>(scan, links, paths);
+}
+
 } // namespace internal
 
 /*!
@@ -368,12 +382,8 @@ Axis_set fit_axes(const Scan& scan,
     std::vector<std::uint8_t> is_used(n);
     for (Index i = 0; i < n; ++i)
       is_used[i] = !scan.is_outlier[i] && !set.is_covered(i);
-    const Links rest = neighbor_links<ConcurrencyTag>(scan, is_used, later.links);
-    const std::vector<Index> sources =
-        internal::nearest_to_axes<ConcurrencyTag>(scan, set, is_used, rest);
-    const Neighbor_graph graph = graph_of(n, rest);
     const Layer_tree tree =
-        layer_tree<ConcurrencyTag>(scan, rest, shortest_paths(scan, graph, sources));
+        internal::layers_of_rest<ConcurrencyTag>(scan, set, is_used, later.links);
     const double done = 0.7 + 0.3 * double(pass - 1) / double(rules.passes - 1);
     if (!internal::fit_chains<ConcurrencyTag>(scan,
                                               tree,

@@ -41,6 +41,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <queue>
 #include <tuple>
 #include <utility>
@@ -124,9 +125,10 @@ public:
   Axis_joiner(const Axis_set& set, double spacing, const Joint_options& rules)
     : m_set(set), m_spacing(spacing), m_rules(rules)
   {
-    for (Index a = 0; a < set.axes.size(); ++a)
-      for (Index k = 0; k < set.axes[a].axis.size(); ++k)
-        level_of(set.axes[a].axis[k].radius).add(set.axes[a].axis[k], {a, k});
+    for_each_node([](Level& level, const Axis_node&, Node) { ++level.count; });
+    for (Level& level : m_levels)
+      level.reserve();
+    for_each_node([](Level& level, const Axis_node& node, Node place) { level.add(node, place); });
     for (Level& level : m_levels)
       level.search = std::make_unique<neighborhood::Nearest_neighbors>(level.points);
   }
@@ -145,7 +147,7 @@ public:
     std::vector<std::uint8_t> is_root(n, 0);
     for (const Index root : roots)
       is_root[root] = 1;
-    std::vector<std::vector<Joint>> options(n);
+    std::vector<std::vector<Option>> options(n);
     pcs::internal::for_each_index<ConcurrencyTag>(
         n,
         [&](std::size_t a) {
@@ -159,14 +161,46 @@ public:
 private:
   using Node = std::pair<Index, Index>; ///< axis, index on it
 
+  /// A possible joint in 16 bytes, since there are up to 400 for each axis.
+  struct Option
+  {
+    double cost;
+    Index parent;
+    Index place; ///< segment, part of the segment in three bits, whether the axis is reversed
+
+    Option(Index b, Index segment, int part, bool is_reversed, double of_joint)
+      : cost(of_joint),
+        parent(b),
+        place(segment << 4 | static_cast<Index>(part) << 1 | static_cast<Index>(is_reversed))
+    {
+    }
+    Joint joint() const
+    {
+      Joint result;
+      result.parent = parent;
+      result.place.segment = place >> 4;
+      result.place.share = double(place >> 1 & 7) / parts;
+      result.is_reversed = (place & 1) != 0;
+      result.cost = cost;
+      return result;
+    }
+  };
+  static constexpr int parts = 6; ///< of a segment, at whose ends joints are tried
+
   /// Nodes of similar radii, so that only thick nodes need a large search radius.
   struct Level
   {
     double thickest = 0;
+    std::size_t count = 0;
     std::vector<Vec3> points;
     std::vector<Node> nodes;
     std::unique_ptr<neighborhood::Nearest_neighbors> search;
 
+    void reserve()
+    {
+      points.reserve(count);
+      nodes.reserve(count);
+    }
     void add(const Axis_node& node, Node place)
     {
       thickest = std::max(thickest, node.radius);
@@ -179,14 +213,22 @@ private:
     const double doublings = std::log2(std::max(1.0, radius / m_spacing));
     return m_levels[std::min(m_levels.size() - 1, static_cast<std::size_t>(doublings))];
   }
+  template <class F>
+  void for_each_node(const F& f)
+  {
+    for (Index a = 0; a < m_set.axes.size(); ++a)
+      for (Index k = 0; k < m_set.axes[a].axis.size(); ++k)
+        f(level_of(m_set.axes[a].axis[k].radius), m_set.axes[a].axis[k], Node(a, k));
+  }
   /// Returns the nodes whose surfaces are within `reach` and some slack, by axis, then by index.
   std::vector<Node> nodes_near(const Vec3& place, double reach) const;
 
   /// Returns the joint of least cost on axis `b` near the given nodes of this axis.
-  Joint best_place(const internal::Axis_end& end,
-                   Index b,
-                   const std::vector<Index>& nodes,
-                   double reach) const;
+  Option best_place(const internal::Axis_end& end,
+                    bool is_reversed,
+                    Index b,
+                    const std::vector<Index>& nodes,
+                    double reach) const;
   /// Returns the cost of a joint, or infinity if it is not below `limit` or out of reach.
   double cost(const internal::Axis_end& end,
               Index b,
@@ -217,9 +259,9 @@ private:
     const double thinnest = m_rules.thinnest * m_spacing;
     return std::max(r, thinnest) / std::max(to, thinnest);
   }
-  std::vector<Joint> options_of(Index a) const;
+  std::vector<Option> options_of(Index a) const;
   static std::vector<Joint> choose(const std::vector<Index>& roots,
-                                   const std::vector<std::vector<Joint>>& options);
+                                   const std::vector<std::vector<Option>>& options);
 
   const Axis_set& m_set;
   double m_spacing;
@@ -254,15 +296,14 @@ inline double Axis_joiner::cost(const internal::Axis_end& end,
   return sum;
 }
 
-inline Joint Axis_joiner::best_place(const internal::Axis_end& end,
-                                     Index b,
-                                     const std::vector<Index>& nodes,
-                                     double reach) const
+inline Axis_joiner::Option Axis_joiner::best_place(const internal::Axis_end& end,
+                                                   bool is_reversed,
+                                                   Index b,
+                                                   const std::vector<Index>& nodes,
+                                                   double reach) const
 {
-  constexpr int parts = 6;
   const Axis& axis = m_set.axes[b].axis;
-  Joint best;
-  best.parent = b;
+  Option best(b, 0, 0, is_reversed, std::numeric_limits<double>::infinity());
   const auto try_segment = [&](Index s) {
     if (!(least_cost(end, axis, s) < best.cost))
       return;
@@ -271,10 +312,8 @@ inline Joint Axis_joiner::best_place(const internal::Axis_end& end,
       place.segment = s;
       place.share = double(k) / parts;
       const double c = cost(end, b, place, reach, best.cost);
-      if (c < best.cost) {
-        best.cost = c;
-        best.place = place;
-      }
+      if (c < best.cost)
+        best = Option(b, s, k, is_reversed, c);
     }
   };
   const auto try_node = [&](Index node, Index& previous) {
@@ -320,9 +359,9 @@ inline std::vector<Axis_joiner::Node> Axis_joiner::nodes_near(const Vec3& place,
   return near;
 }
 
-inline std::vector<Joint> Axis_joiner::options_of(Index a) const
+inline std::vector<Axis_joiner::Option> Axis_joiner::options_of(Index a) const
 {
-  std::vector<Joint> options;
+  std::vector<Option> options;
   std::vector<Index> nodes;
   const Axis& axis = m_set.axes[a].axis;
   const double reach = std::max(m_rules.reach * m_spacing, m_rules.long_reach * length_of(axis));
@@ -342,20 +381,18 @@ inline std::vector<Joint> Axis_joiner::options_of(Index a) const
         nodes.push_back(near[i].second);
       if (b == a)
         continue;
-      Joint joint = best_place(end, b, nodes, reach);
-      joint.is_reversed = is_tip;
-      joint.cost += cost_of_end;
-      if (std::isfinite(joint.cost))
-        options.push_back(joint);
+      Option option = best_place(end, is_tip, b, nodes, reach);
+      option.cost += cost_of_end;
+      if (std::isfinite(option.cost))
+        options.push_back(option);
     }
   }
-  std::stable_sort(options.begin(), options.end(), [](const Joint& x, const Joint& y) {
+  std::stable_sort(options.begin(), options.end(), [](const Option& x, const Option& y) {
     return x.cost < y.cost;
   });
   constexpr std::size_t enough = 400;
-  if (options.size() > enough)
-    options.resize(enough);
-  return options;
+  const auto count = static_cast<std::ptrdiff_t>(std::min(enough, options.size()));
+  return std::vector<Option>(options.begin(), options.begin() + count); // without spare memory
 }
 
 /*!
@@ -364,23 +401,28 @@ inline std::vector<Joint> Axis_joiner::options_of(Index a) const
   has the least additional cost.
 */
 inline std::vector<Joint> Axis_joiner::choose(const std::vector<Index>& roots,
-                                              const std::vector<std::vector<Joint>>& options)
+                                              const std::vector<std::vector<Option>>& options)
 {
   const std::size_t n = options.size();
-  std::vector<Joint> joints(n);
-  std::vector<std::vector<Index>> children(n), users(n); // users: axes with an option on an axis
+  std::vector<Index> chosen(n, 0);          // index of the option of each axis
+  std::vector<std::size_t> first(n + 1, 0); // in `users`
+  std::vector<std::vector<Index>> children(n);
   for (Index a = 0; a < n; ++a) {
-    if (options[a].empty())
-      continue;
-    joints[a] = options[a].front();
-    children[joints[a].parent].push_back(a);
-    for (const Joint& o : options[a])
-      users[o.parent].push_back(a);
+    if (!options[a].empty())
+      children[options[a].front().parent].push_back(a);
+    for (const Option& o : options[a])
+      ++first[o.parent];
   }
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<Index> users(first[n]); // axes with an option on an axis
+  for (Index a = 0; a < n; ++a)
+    for (const Option& o : options[a])
+      users[--first[o.parent]] = a;
   std::vector<std::uint8_t> is_reached(n, 0);
   // additional cost of a change, axis, index of the option
-  using Change = std::tuple<double, Index, std::size_t>;
+  using Change = std::tuple<double, Index, Index>;
   std::priority_queue<Change, std::vector<Change>, std::greater<Change>> changes;
+  std::vector<Index> best(n, none); // index of the best option that is among the changes
   const auto reach = [&](Index from) {
     std::vector<Index> stack{from}, reached;
     while (!stack.empty()) {
@@ -393,12 +435,16 @@ inline std::vector<Joint> Axis_joiner::choose(const std::vector<Index>& roots,
       stack.insert(stack.end(), children[a].begin(), children[a].end());
     }
     for (const Index b : reached)
-      for (const Index a : users[b])
-        for (std::size_t k = 0; !is_reached[a] && k < options[a].size(); ++k)
+      for (std::size_t u = first[b]; u < first[b + 1]; ++u) {
+        const Index a = users[u];
+        // options are sorted: only earlier ones than the best are better
+        for (Index k = 0; !is_reached[a] && k < std::min<std::size_t>(best[a], options[a].size());
+             ++k)
           if (options[a][k].parent == b) {
-            changes.emplace(options[a][k].cost - joints[a].cost, a, k);
-            break; // options are sorted
+            changes.emplace(options[a][k].cost - options[a][chosen[a]].cost, a, k);
+            best[a] = k;
           }
+      }
   };
   for (const Index root : roots)
     reach(root);
@@ -407,12 +453,13 @@ inline std::vector<Joint> Axis_joiner::choose(const std::vector<Index>& roots,
     changes.pop();
     if (is_reached[a])
       continue;
-    joints[a] = options[a][k];
+    chosen[a] = k;
     reach(a);
   }
+  std::vector<Joint> joints(n);
   for (Index a = 0; a < n; ++a)
-    if (!is_reached[a])
-      joints[a] = Joint();
+    if (is_reached[a] && !options[a].empty())
+      joints[a] = options[a][chosen[a]].joint();
   return joints;
 }
 

@@ -104,6 +104,8 @@ inline std::vector<std::vector<Index>> stem_in_bins(const Scan& scan,
   Point_sets above(n), sets(n); // connected components above all bins, and in each of them
   Links across;
   for (const Link& l : links) {
+    if (!is_used[l.first] || !is_used[l.second])
+      continue;
     const Index a = bins.bin[l.first], b = bins.bin[l.second];
     if (a == b)
       (a == none ? above : sets).unite(l.first, l.second);
@@ -281,13 +283,9 @@ private:
     const Sheet_disc sheet = disc(layer, center / double(layer.size()));
     if (!sheet.is_filled(sheet.cell_of(m_rules.crowd), m_rules.spread))
       return;
-    Links links;
-    for (const Link& l : m_links)
-      if (is_standing[l.first] && is_standing[l.second])
-        links.push_back(l);
     const Low_bins bins(m_scan, height, m_rules, is_standing);
     const auto foot =
-        find_foot(m_scan, stem_in_bins(m_scan, links, height, is_standing, bins), m_up);
+        find_foot(m_scan, stem_in_bins(m_scan, m_links, height, is_standing, bins), m_up);
     if (!foot) { // such as a lying stem
       const auto standing = std::count(is_standing.begin(), is_standing.end(), 1);
       if (double(standing) >= m_rules.lying * double(layer.size()))
@@ -298,7 +296,7 @@ private:
       return;
     m_foot = foot;
     m_points = far_from(*foot, layer);
-    add_plants(bins, links, *foot);
+    add_plants(bins, *foot);
     terrain.bridge(foot->center, kept(*foot));
     for (Index i = 0; i < m_scan.size(); ++i) {
       const double distance = across(i, *foot);
@@ -313,7 +311,7 @@ private:
 
   /// Adds the points of the lowest bins, which plants fill, and of connected components that extend
   /// from these bins into the same number of bins above.
-  void add_plants(const Low_bins& bins, const Links& links, const Stem_foot& foot)
+  void add_plants(const Low_bins& bins, const Stem_foot& foot)
   {
     std::size_t filled = 0;
     while (filled < bins.members.size() && is_filled(far_from(foot, bins.members[filled]), foot))
@@ -325,7 +323,7 @@ private:
         is_low[i] = 1;
         low.push_back(i);
       }
-    const Point_parts parts = connected_parts<CGAL::Sequential_tag>(is_low, links);
+    const Point_parts parts = connected_parts<CGAL::Sequential_tag>(is_low, m_links);
     for (const Index i : low)
       is_plant[parts.part[i]] |= bins.bin[i] < filled;
     for (const Index i : low)

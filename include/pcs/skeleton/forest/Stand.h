@@ -9,6 +9,7 @@
 #include <pcs/skeleton/input/Session_hints.h>
 #include <pcs/skeleton/model/Scan.h>
 
+#include <functional>
 #include <vector>
 
 namespace pcs {
@@ -22,6 +23,9 @@ struct Detected_tree
   double radius_at_breast = 0; ///< its radius at breast height; 0 if its axis ends below [L]
 };
 
+/// Returns the input points, the same at each call.
+using Read_input = std::function<std::vector<Vec3>()>;
+
 struct Stand
 {
   std::vector<Detected_tree> trees;     ///< in descending order of radius
@@ -30,11 +34,12 @@ struct Stand
 };
 
 /*!
-  Detects the trees of a scan. `input` is finite, with at least two different points. Returns
-  `false` if the work was cancelled; in this case, `forest` remains unchanged. O(n log n).
+  Detects the trees of a scan. The points are finite, with at least two different ones. They are
+  read several times, since they are not stored meanwhile. Returns `false` if the work was
+  cancelled; in this case, `forest` remains unchanged. O(n log n).
 */
 template <class ConcurrencyTag>
-bool find_trees(const std::vector<Vec3>& input,
+bool find_trees(const Read_input& read_input,
                 const Session_hints& hints,
                 pcs::internal::Progress& progress,
                 Stand& forest);

@@ -31,15 +31,29 @@ namespace skeleton {
 
 namespace internal {
 
-/// The trees detected at one voxel size. Vectors are indexed by input point unless stated
-/// otherwise.
+/// The trees detected at one voxel size.
 struct Stand_state
 {
   Scan_frame frame;
-  std::vector<Found_stem> stems; ///< grouped by tree; in coordinates of `frame`
-  std::vector<Index> tree_of_input, stem_of_input;
-  //! of the thinned points, relative to the median of the points of trees [-]
-  std::vector<float> spacing_of_input;
+  std::vector<Found_stem> stems;     ///< grouped by tree; in coordinates of `frame`
+  std::vector<Index> point_of_input; ///< point of the thinned scan of each input point
+  //! of these points; empty if nothing was detected or assigned
+  std::vector<Index> tree_of_point, stem_of_point;
+  //! of these points, relative to the median of the points of trees [-]; empty as above
+  std::vector<float> spacing_of_point;
+
+  Index tree_of_input(std::size_t i) const
+  {
+    return tree_of_point.empty() ? none : tree_of_point[point_of_input[i]];
+  }
+  Index stem_of_input(std::size_t i) const
+  {
+    return stem_of_point.empty() ? none : stem_of_point[point_of_input[i]];
+  }
+  double spacing_of_input(std::size_t i) const
+  {
+    return double(spacing_of_point[point_of_input[i]]);
+  }
 };
 
 /// Points of a scan: those above the ground, and those that may show ground.
@@ -83,10 +97,27 @@ Ground_view view_ground(const Session<ConcurrencyTag>& session, double breast_he
   return view;
 }
 
+/// Returns the spacing of each point relative to the median of the points of trees [-].
+inline std::vector<float> relative_spacings(const Scan& scan,
+                                            const std::vector<Index>& tree_of_point)
+{
+  std::vector<double> spacings; // without the ground, whose spacing may differ
+  for (Index i = 0; i < scan.size(); ++i)
+    if (tree_of_point[i] != none)
+      spacings.push_back(scan.local_spacing[i]);
+  if (spacings.empty())
+    spacings = scan.local_spacing;
+  const double spacing = pcs::internal::lower_median(spacings);
+  std::vector<float> result(scan.size());
+  for (std::size_t i = 0; i < result.size(); ++i)
+    result[i] = static_cast<float>(scan.local_spacing[i] / spacing);
+  return result;
+}
+
 /// Detects the stems. Assigns points to trees only if `are_wanted(stand)` holds for these stems.
 /// Returns `false` if the work was cancelled.
 template <class ConcurrencyTag, class Are_wanted>
-bool find_stand(const std::vector<Vec3>& input,
+bool find_stand(const Read_input& read_input,
                 double side,
                 const Session_hints& hints,
                 const Stand_options& rules,
@@ -94,9 +125,8 @@ bool find_stand(const std::vector<Vec3>& input,
                 const Are_wanted& are_wanted,
                 Stand_state& stand)
 {
-  stand.tree_of_input.assign(input.size(), none);
-  stand.stem_of_input.assign(input.size(), none);
-  const Thinned_points thinned(input, side);
+  Thinned_points thinned = thin_by_voxels<ConcurrencyTag>(read_input(), side);
+  stand.point_of_input = std::move(thinned.of_input);
   if (thinned.points.size() < rules.solid_part) // much smaller than a tree
     return progress(1);
   Session_options options(hints);
@@ -104,11 +134,13 @@ bool find_stand(const std::vector<Vec3>& input,
   options.do_trace_paths = false;
   options.do_thin = false;
   options.clutter.ground.thickest = rules.foot * hints.breast_height; // feet remain
-  Session<ConcurrencyTag> session(thinned.points, {}, options);
+  Session<ConcurrencyTag> session(std::move(thinned.points), {}, options);
   if (!session.find_paths(progress))
     return false;
   const Scan& scan = session.scan();
   stand.frame = scan.frame;
+  for (Index& point : stand.point_of_input)
+    point = scan.point_of_input[point];
   const Ground_view view = view_ground(session, hints.breast_height);
   Stem_detector<ConcurrencyTag> finder(scan,
                                        view.is_above,
@@ -119,26 +151,14 @@ bool find_stand(const std::vector<Vec3>& input,
   if (!finder.find(progress))
     return false;
   stand.stems = finder.stems();
-  const auto point_of = [&](std::size_t i) { return scan.point_of_input[thinned.of_input[i]]; };
   if (!stand.stems.empty())
-    for (std::size_t i = 0; i < input.size(); ++i)
-      stand.stem_of_input[i] = finder.stem_of_point()[point_of(i)];
+    stand.stem_of_point = finder.stem_of_point();
   if (!are_wanted(stand))
     return progress(1);
   if (!finder.label(progress))
     return false;
-  std::vector<double> spacings; // without the ground, whose spacing may differ
-  for (Index i = 0; i < scan.size(); ++i)
-    if (finder.tree_of_point()[i] != none)
-      spacings.push_back(scan.local_spacing[i]);
-  if (spacings.empty())
-    spacings = scan.local_spacing;
-  const double spacing = pcs::internal::lower_median(spacings);
-  stand.spacing_of_input.resize(input.size());
-  for (std::size_t i = 0; i < input.size(); ++i) {
-    stand.tree_of_input[i] = finder.tree_of_point()[point_of(i)];
-    stand.spacing_of_input[i] = static_cast<float>(scan.local_spacing[point_of(i)] / spacing);
-  }
+  stand.tree_of_point = finder.tree_of_point();
+  stand.spacing_of_point = relative_spacings(scan, stand.tree_of_point);
   return true;
 }
 
@@ -147,12 +167,12 @@ inline std::vector<bool>
 sparse_stems(const Stand_state& coarse, const Stand_options& rules, const Stand_state& stand)
 {
   std::vector<bool> result(coarse.stems.size(), false);
-  if (coarse.stems.empty() || stand.spacing_of_input.empty())
+  if (coarse.stems.empty() || stand.spacing_of_point.empty())
     return result;
   std::vector<std::vector<float>> spacings(coarse.stems.size());
-  for (std::size_t i = 0; i < coarse.stem_of_input.size(); ++i)
-    if (coarse.stem_of_input[i] != none)
-      spacings[coarse.stem_of_input[i]].push_back(stand.spacing_of_input[i]);
+  for (std::size_t i = 0; i < coarse.point_of_input.size(); ++i)
+    if (coarse.stem_of_input(i) != none)
+      spacings[coarse.stem_of_input(i)].push_back(stand.spacing_of_point[stand.point_of_input[i]]);
   for (std::size_t s = 0; s < result.size(); ++s)
     result[s] = double(pcs::internal::lower_median(spacings[s])) >= rules.sparse;
   return result;
@@ -160,16 +180,20 @@ sparse_stems(const Stand_state& coarse, const Stand_options& rules, const Stand_
 
 /*!
   Adds the trees of sparsely sampled stems of `coarse`, which are disconnected at the finer voxel
-  size. Assigns to these trees their points that are sparse or unassigned. O(points + stems^2).
+  size. Assigns to these trees their points that are sparse or unassigned. Returns the tree of each
+  input point. O(points + stems^2).
 */
-inline void add_sparse_trees(const Stand_state& coarse,
-                             const std::vector<bool>& is_sparse,
-                             double breast_height,
-                             const Stand_options& rules,
-                             Stand_state& stand)
+inline std::vector<Index> add_sparse_trees(const Stand_state& coarse,
+                                           const std::vector<bool>& is_sparse,
+                                           double breast_height,
+                                           const Stand_options& rules,
+                                           Stand_state& stand)
 {
+  std::vector<Index> tree_of_input(stand.point_of_input.size());
+  for (std::size_t i = 0; i < tree_of_input.size(); ++i)
+    tree_of_input[i] = stand.tree_of_input(i);
   if (coarse.stems.empty())
-    return;
+    return tree_of_input;
   Index number_of_trees = stand.stems.empty() ? 0 : stand.stems.back().tree + 1;
   std::vector<Index> tree_of_coarse(coarse.stems.back().tree + 1, none);
   for (std::size_t s = 0; s < coarse.stems.size(); ++s) {
@@ -194,12 +218,13 @@ inline void add_sparse_trees(const Stand_state& coarse,
       stand.stems.push_back(stem);
     }
   }
-  for (std::size_t i = 0; i < coarse.tree_of_input.size(); ++i) {
-    const Index c = coarse.tree_of_input[i];
+  for (std::size_t i = 0; i < tree_of_input.size(); ++i) {
+    const Index c = coarse.tree_of_input(i);
     if (c != none && tree_of_coarse[c] != none &&
-        (stand.tree_of_input[i] == none || double(stand.spacing_of_input[i]) >= rules.sparse))
-      stand.tree_of_input[i] = tree_of_coarse[c];
+        (tree_of_input[i] == none || stand.spacing_of_input(i) >= rules.sparse))
+      tree_of_input[i] = tree_of_coarse[c];
   }
+  return tree_of_input;
 }
 
 /*!
@@ -235,7 +260,7 @@ inline void remove_low_plants(const std::vector<Vec3>& input,
 } // namespace internal
 
 template <class ConcurrencyTag>
-bool find_trees(const std::vector<Vec3>& input,
+bool find_trees(const Read_input& read_input,
                 const Session_hints& hints,
                 pcs::internal::Progress& progress,
                 Stand& forest)
@@ -245,7 +270,13 @@ bool find_trees(const std::vector<Vec3>& input,
   internal::Stand_state stand, coarse;
   progress.stage(0, 0.75);
   const auto always = [](const internal::Stand_state&) { return true; };
-  if (!internal::find_stand<ConcurrencyTag>(input, side, hints, rules, progress, always, stand))
+  if (!internal::find_stand<ConcurrencyTag>(read_input,
+                                            side,
+                                            hints,
+                                            rules,
+                                            progress,
+                                            always,
+                                            stand))
     return false;
   std::vector<bool> is_sparse;
   const auto has_sparse_stems = [&](const internal::Stand_state& other) {
@@ -253,7 +284,7 @@ bool find_trees(const std::vector<Vec3>& input,
     return std::find(is_sparse.begin(), is_sparse.end(), true) != is_sparse.end();
   };
   progress.stage(0.75, 1);
-  if (!internal::find_stand<ConcurrencyTag>(input,
+  if (!internal::find_stand<ConcurrencyTag>(read_input,
                                             rules.coarser * side,
                                             hints,
                                             rules,
@@ -261,7 +292,9 @@ bool find_trees(const std::vector<Vec3>& input,
                                             has_sparse_stems,
                                             coarse))
     return false;
-  internal::add_sparse_trees(coarse, is_sparse, hints.breast_height, rules, stand);
+  std::vector<Index> tree_of_input =
+      internal::add_sparse_trees(coarse, is_sparse, hints.breast_height, rules, stand);
+  coarse = internal::Stand_state();
 
   std::vector<internal::Found_stem> thickest; // of each tree, in descending order of radius
   for (const internal::Found_stem& stem : stand.stems)
@@ -278,10 +311,10 @@ bool find_trees(const std::vector<Vec3>& input,
                             stand.frame.unit * stem.radius,
                             stand.frame.unit * stem.radius_at_breast});
   }
-  for (Index& tree : stand.tree_of_input)
+  for (Index& tree : tree_of_input)
     tree = tree == none ? none : place[tree];
-  result.tree_of_input = std::move(stand.tree_of_input);
-  internal::remove_low_plants(input, hints.up, hints.breast_height, result);
+  result.tree_of_input = std::move(tree_of_input);
+  internal::remove_low_plants(read_input(), hints.up, hints.breast_height, result);
   forest = std::move(result);
   return true;
 }

@@ -26,7 +26,6 @@
 #include <cstdint>
 #include <limits>
 #include <map>
-#include <memory>
 #include <utility>
 #include <vector>
 
@@ -139,20 +138,13 @@ public:
   /// Performs the first fit and detects its stems. Returns `false` if the work was cancelled.
   bool find(pcs::internal::Progress& progress)
   {
-    m_links = neighbor_links<ConcurrencyTag>(m_scan, m_is_used, m_options.axes.links);
-    const Links gaps = links_across_gaps(m_scan,
-                                         m_is_used,
-                                         m_options.axes.links,
-                                         connected_parts<ConcurrencyTag>(m_is_used, m_links));
-    m_links.insert(m_links.end(), gaps.begin(), gaps.end());
-    m_graph.reset(new Neighbor_graph(graph_of(m_scan.size(), m_links)));
     m_tree_of_point.assign(m_scan.size(), none);
     m_stem_of_point.assign(m_scan.size(), none);
     m_is_solid = solid_points();
-    const std::vector<Index> lowest = lowest_points();
+    const std::vector<Index> lowest = link_parts();
     if (lowest.empty())
       return progress(1);
-    if (!fit_along(shortest_paths(m_scan, *m_graph, lowest), progress, 0.5, 0.75))
+    if (!fit_along(paths_from(lowest), progress, 0.5, 0.75))
       return false;
     find_stems();
     m_feet = points_of_feet();
@@ -165,11 +157,13 @@ public:
   {
     if (m_feet.empty())
       return progress(1);
-    const Shortest_paths paths = shortest_paths(m_scan, *m_graph, m_feet);
-    if (!fit_along(paths, progress, 0.75, 1))
+    m_axes = Axis_set(); // of the first fit
+    Shortest_paths paths = paths_from(m_feet);
+    const std::vector<Index> predecessor = paths.predecessor;
+    if (!fit_along(std::move(paths), progress, 0.75, 1))
       return false;
     label_axes();
-    label_points(paths);
+    label_points(predecessor);
     return true;
   }
 
@@ -180,10 +174,25 @@ public:
   const std::vector<Index>& stem_of_point() const { return m_stem_of_point; }
 
 private:
-  /// Returns the points within one level-set thickness of the lowest point of each component.
-  std::vector<Index> lowest_points() const
+  // The list of links is made again where it is needed: it is larger than the points.
+  Links used_links() const
   {
-    const Point_parts parts = connected_parts<ConcurrencyTag>(m_is_used, m_links);
+    Links links = neighbor_links<ConcurrencyTag>(m_scan, m_is_used, m_options.axes.links);
+    links.insert(links.end(), m_gaps.begin(), m_gaps.end());
+    return links;
+  }
+
+  /// Finds the links across gaps. Returns the points within one level-set thickness of the lowest
+  /// point of each component.
+  std::vector<Index> link_parts()
+  {
+    Links links = used_links(); // without gaps
+    m_gaps = links_across_gaps(m_scan,
+                               m_is_used,
+                               m_options.axes.links,
+                               connected_parts<ConcurrencyTag>(m_is_used, links));
+    links.insert(links.end(), m_gaps.begin(), m_gaps.end());
+    const Point_parts parts = connected_parts<ConcurrencyTag>(m_is_used, links);
     std::vector<double> low(m_scan.size(), std::numeric_limits<double>::infinity());
     for (Index i = 0; i < m_scan.size(); ++i)
       if (m_is_used[i])
@@ -196,11 +205,23 @@ private:
     return sources;
   }
 
-  bool
-  fit_along(const Shortest_paths& paths, pcs::internal::Progress& progress, double from, double to)
+  Shortest_paths paths_from(const std::vector<Index>& sources) const
   {
-    Layer_tree layers = layer_tree<ConcurrencyTag>(m_scan, m_links, paths);
+    const Neighbor_link_flags links(ConcurrencyTag(), m_scan, m_is_used, m_options.axes.links);
+    return shortest_paths(m_scan, graph_of(links, m_gaps), sources);
+  }
+
+  Layer_tree layers_along(const Shortest_paths& paths) const
+  {
+    Layer_tree layers = layer_tree<ConcurrencyTag>(m_scan, used_links(), paths);
     merge_ring_arcs<ConcurrencyTag>(m_scan, m_options.layers.rings, layers);
+    return layers;
+  }
+
+  bool fit_along(Shortest_paths paths, pcs::internal::Progress& progress, double from, double to)
+  {
+    const Layer_tree layers = layers_along(paths);
+    paths = Shortest_paths();
     bool is_running = true;
     m_axes = fit_axes<ConcurrencyTag>(m_scan, layers, m_options.axes, [&](double f) {
       return is_running = progress(from + (to - from) * f);
@@ -362,10 +383,9 @@ private:
 
   /// Assigns the points to trees by their axis; without an axis or its tree, by the path from the
   /// nearest foot.
-  void label_points(const Shortest_paths& paths)
+  void label_points(const std::vector<Index>& predecessor)
   {
-    inherit(m_tree_of_point,
-            [&](Index i) { return paths.predecessor[i] == i ? none : paths.predecessor[i]; });
+    inherit(m_tree_of_point, [&](Index i) { return predecessor[i] == i ? none : predecessor[i]; });
     for (Index i = 0; i < m_scan.size(); ++i)
       if (m_axes.is_covered(i) && m_tree_of_axis[m_axes.axis_of_point[i]] != none)
         m_tree_of_point[i] = m_tree_of_axis[m_axes.axis_of_point[i]];
@@ -419,8 +439,7 @@ private:
   const Session_options& m_options;
   const Stand_options& m_rules;
   std::vector<std::uint8_t> m_is_solid;
-  Links m_links;
-  std::unique_ptr<Neighbor_graph> m_graph; // constructed directly: a move would copy it
+  Links m_gaps; ///< links across gaps
   Axis_set m_axes;
   std::vector<Found_stem> m_stems;
   std::vector<Index> m_stem_of_point; ///< of points at the feet

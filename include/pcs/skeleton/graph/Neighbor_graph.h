@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Neighbour graph of a scan for Boost.Graph, with links that close occlusion gaps.
+// Neighbour graph of a scan, with links that close occlusion gaps.
 
 #ifndef PCS_SKELETON_GRAPH_NEIGHBOR_GRAPH_H
 #define PCS_SKELETON_GRAPH_NEIGHBOR_GRAPH_H
@@ -10,29 +10,16 @@
 #include <pcs/skeleton/graph/Point_cells.h>
 #include <pcs/skeleton/model/Scan.h>
 
-#include <boost/graph/compressed_sparse_row_graph.hpp>
-#include <boost/iterator/iterator_facade.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
 namespace pcs {
 namespace skeleton {
-
-/// Compressed rows of Boost.Graph with every edge in both directions; costs are computed from the
-/// points.
-using Neighbor_graph = boost::compressed_sparse_row_graph<boost::directedS,
-                                                          boost::no_property,
-                                                          boost::no_property,
-                                                          boost::no_property,
-                                                          Index,
-                                                          Index>;
 
 /// Criteria for links between neighbours, in multiples of the spacing [-].
 struct Link_rule
@@ -102,6 +89,74 @@ private:
   std::vector<Index> m_size, m_parent;
 };
 
+/// The links between neighbours among some points, each once: two bytes per point.
+class Neighbor_link_flags
+{
+public:
+  template <class ConcurrencyTag>
+  Neighbor_link_flags(ConcurrencyTag,
+                      const Scan& scan,
+                      const std::vector<std::uint8_t>& is_used,
+                      const Link_rule& rule)
+    : m_scan(scan), m_flags(scan.size())
+  {
+    const auto is_link = [&](Index i, Index j) {
+      const double longest = std::max(rule.longest(scan, i), rule.longest(scan, j));
+      return (scan.points[i] - scan.points[j]).squaredNorm() <= longest * longest;
+    };
+    const auto knows = [&](Index i, Index j) {
+      bool does = false;
+      for (const Index k : scan.neighbors[i])
+        does |= k == j; // no early exit, to avoid branch misprediction
+      return does;
+    };
+    pcs::internal::for_each_index<ConcurrencyTag>(scan.size(), [&](std::size_t k) {
+      const Index i = static_cast<Index>(k);
+      unsigned bits = 0;
+      for (std::size_t b = 0; is_used[i] && b < neighbors_per_point; ++b) {
+        const Index j = scan.neighbors[i][b];
+        // two mutual neighbours list their link with the smaller index
+        if (j != none && is_used[j] && is_link(i, j) && !(j < i && knows(j, i)))
+          bits |= 1U << b;
+      }
+      m_flags[i] = static_cast<std::uint16_t>(bits);
+    });
+  }
+
+  /// Calls `f(link)` for the links that are listed with the points of `[begin, end)`, which are
+  /// nearly in increasing order.
+  template <class F>
+  void for_each(std::size_t begin, std::size_t end, const F& f) const
+  {
+    for (std::size_t k = begin; k < end; ++k) {
+      const Index i = static_cast<Index>(k);
+      for (std::size_t b = 0; m_flags[i] >> b != 0; ++b)
+        if (m_flags[i] >> b & 1) {
+          const Index j = m_scan.neighbors[i][b];
+          f(Link{std::min(i, j), std::max(i, j)});
+        }
+    }
+  }
+
+  /// Returns the number of links that are listed with the points of `[begin, end)`.
+  std::size_t count(std::size_t begin, std::size_t end) const
+  {
+    std::size_t count = 0;
+    for (std::size_t i = begin; i < end; ++i)
+      for (unsigned bits = m_flags[i]; bits != 0; bits &= bits - 1)
+        ++count;
+    return count;
+  }
+
+  std::size_t number_of_points() const { return m_flags.size(); }
+
+private:
+  static_assert(neighbors_per_point <= 16, "pcs: one bit per neighbour");
+
+  const Scan& m_scan;
+  std::vector<std::uint16_t> m_flags; ///< bit b: the link to the b-th neighbour
+};
+
 /// Returns the links between neighbours among the points of `is_used`, each once, nearly in
 /// increasing order.
 template <class ConcurrencyTag>
@@ -110,38 +165,10 @@ Links neighbor_links(const Scan& scan,
                      const Link_rule& rule)
 {
   const std::size_t n = scan.size(), block = 4096, number_of_blocks = (n + block - 1) / block;
-  const auto is_link = [&](Index i, Index j) {
-    const double longest = std::max(rule.longest(scan, i), rule.longest(scan, j));
-    return (scan.points[i] - scan.points[j]).squaredNorm() <= longest * longest;
-  };
-  const auto knows = [&](Index i, Index j) {
-    bool does = false;
-    for (const Index k : scan.neighbors[i])
-      does |= k == j; // no early exit, to avoid branch misprediction
-    return does;
-  };
-  // bit b: the link to the b-th neighbour is listed with this point
-  std::vector<std::uint16_t> links_of(n);
-  static_assert(neighbors_per_point <= 16, "pcs: one bit per neighbour");
+  const Neighbor_link_flags flags(ConcurrencyTag(), scan, is_used, rule);
   std::vector<std::size_t> first(number_of_blocks + 1, 0);
   pcs::internal::for_each_block<ConcurrencyTag>(n, block, [&](std::size_t begin, std::size_t end) {
-    std::size_t count = 0;
-    for (std::size_t k = begin; k < end; ++k) {
-      const Index i = static_cast<Index>(k);
-      if (!is_used[i])
-        continue;
-      unsigned bits = 0;
-      for (std::size_t b = 0; b < neighbors_per_point; ++b) {
-        const Index j = scan.neighbors[i][b];
-        // two mutual neighbours list their link with the smaller index
-        if (j == none || !is_used[j] || !is_link(i, j) || (j < i && knows(j, i)))
-          continue;
-        bits |= 1U << b;
-        ++count;
-      }
-      links_of[i] = static_cast<std::uint16_t>(bits);
-    }
-    first[begin / block + 1] = count;
+    first[begin / block + 1] = flags.count(begin, end);
   });
   for (std::size_t b = 0; b < number_of_blocks; ++b)
     first[b + 1] += first[b];
@@ -150,14 +177,7 @@ Links neighbor_links(const Scan& scan,
   links.resize(first.back());
   pcs::internal::for_each_block<ConcurrencyTag>(n, block, [&](std::size_t begin, std::size_t end) {
     Link* next = links.data() + first[begin / block];
-    for (std::size_t k = begin; k < end; ++k) {
-      const Index i = static_cast<Index>(k);
-      for (std::size_t b = 0; b < neighbors_per_point; ++b)
-        if (links_of[i] >> b & 1U) {
-          const Index j = scan.neighbors[i][b];
-          *next++ = {std::min(i, j), std::max(i, j)};
-        }
-    }
+    flags.for_each(begin, end, [&](const Link& l) { *next++ = l; });
   });
   return links;
 }
@@ -360,72 +380,66 @@ inline Links links_across_gaps(const Scan& scan,
   return internal::Gap_closer(scan, is_used, rule.gap * scan.spacing, parts)();
 }
 
-namespace internal {
-
-/// Iterator over every link of two lists in both directions.
-class Edge_iterator : public boost::iterator_facade<Edge_iterator,
-                                                    std::pair<Index, Index>,
-                                                    boost::forward_traversal_tag,
-                                                    std::pair<Index, Index>>
+/// The neighbours of each point in compressed rows, with every link in both directions. Costs are
+/// computed from the points.
+class Neighbor_graph
 {
 public:
-  static Edge_iterator begin(const Links& first, const Links& second)
+  /// `for_each_link(f)` calls `f(link)` for all links, in the same order at each call.
+  template <class ForEachLink>
+  Neighbor_graph(std::size_t n, const ForEachLink& for_each_link) : m_first(n + 1, 0)
   {
-    const Link *end = first.data() + first.size(), *next = second.data();
-    return first.empty() ? Edge_iterator(next, nullptr, nullptr)
-                         : Edge_iterator(first.data(), end, next);
+    for_each_link([&](const Link& l) {
+      ++m_first[l.first];
+      ++m_first[l.second];
+    });
+    Index end = 0; // of the rows so far; the rows are filled from their ends
+    for (Index& first : m_first)
+      first = end += first;
+    m_neighbor.resize(end);
+    for_each_link([&](const Link& l) {
+      m_neighbor[--m_first[l.first]] = l.second;
+      m_neighbor[--m_first[l.second]] = l.first;
+    });
+    for (std::size_t v = 0; v < n; ++v)
+      std::reverse(m_neighbor.begin() + m_first[v], m_neighbor.begin() + m_first[v + 1]);
   }
-  static Edge_iterator end(const Links& second)
-  {
-    return Edge_iterator(second.data() + second.size(), nullptr, nullptr);
-  }
+
+  std::size_t number_of_points() const { return m_first.size() - 1; }
+  std::size_t number_of_edges() const { return m_neighbor.size(); }
+  /// The neighbours of a point, in the order of the links.
+  const Index* begin(Index v) const { return m_neighbor.data() + m_first[v]; }
+  const Index* end(Index v) const { return m_neighbor.data() + m_first[v + 1]; }
 
 private:
-  friend class boost::iterator_core_access;
-
-  Edge_iterator(const Link* link, const Link* end, const Link* next)
-    : m_link(link), m_end(end), m_next(next)
-  {
-  }
-
-  void increment()
-  {
-    m_link += m_is_reverse;
-    if (m_link == m_end)
-      m_link = m_next;
-    m_is_reverse = !m_is_reverse;
-  }
-  bool equal(const Edge_iterator& other) const
-  {
-    return m_link == other.m_link && m_is_reverse == other.m_is_reverse;
-  }
-  std::pair<Index, Index> dereference() const
-  {
-    return m_is_reverse ? std::make_pair(m_link->second, m_link->first)
-                        : std::make_pair(m_link->first, m_link->second);
-  }
-
-  const Link* m_link;
-  const Link *m_end, *m_next; ///< end of the first list, begin of the second
-  bool m_is_reverse = false;
+  std::vector<Index> m_first;
+  pcs::internal::Huge_vector<Index> m_neighbor;
 };
-
-} // namespace internal
 
 /// Builds a graph from links and those that close gaps, each in both directions.
 inline Neighbor_graph graph_of(std::size_t n, const Links& links, const Links& gaps = Links())
 {
-  return Neighbor_graph(boost::edges_are_unsorted_multi_pass,
-                        internal::Edge_iterator::begin(links, gaps),
-                        internal::Edge_iterator::end(gaps),
-                        static_cast<Index>(n));
+  return Neighbor_graph(n, [&](const auto& f) {
+    std::for_each(links.begin(), links.end(), f);
+    std::for_each(gaps.begin(), gaps.end(), f);
+  });
+}
+
+/// Builds the same graph without a list of the links.
+inline Neighbor_graph graph_of(const Neighbor_link_flags& links, const Links& gaps = Links())
+{
+  const std::size_t n = links.number_of_points();
+  return Neighbor_graph(n, [&](const auto& f) {
+    links.for_each(0, n, f);
+    std::for_each(gaps.begin(), gaps.end(), f);
+  });
 }
 
 /// Graph of all points, in which gaps between connected components are closed.
 struct Linked_parts
 {
   Links gaps;
-  std::unique_ptr<Neighbor_graph> graph;
+  std::optional<Neighbor_graph> graph;
 };
 
 } // namespace skeleton

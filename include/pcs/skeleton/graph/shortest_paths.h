@@ -134,20 +134,22 @@ shortest_paths(const Scan& scan, const Neighbor_graph& graph, const std::vector<
       if (k + far_ahead < now.size()) {
         const Index v = now[k + far_ahead].point;
         fetch(distance[v]);
-        if (const auto [w, end] = adjacent_vertices(v, graph); w != end)
-          fetch(*w);
+        if (graph.begin(v) != graph.end(v))
+          fetch(*graph.begin(v));
       }
-      if (k + ahead < now.size() && !(now[k + ahead].distance > distance[now[k + ahead].point]))
-        for (auto [w, end] = adjacent_vertices(now[k + ahead].point, graph); w != end; ++w) {
+      if (k + ahead < now.size() && !(now[k + ahead].distance > distance[now[k + ahead].point])) {
+        const Index v = now[k + ahead].point;
+        for (const Index* w = graph.begin(v); w != graph.end(v); ++w) {
           fetch(distance[*w]);
           fetch(scan.points[*w]);
         }
+      }
       const Index v = now[k].point;
       const double before = now[k].distance;
       if (before > distance[v])
         continue; // outdated: a shorter path was found
-      for (auto [w, end] = adjacent_vertices(v, graph); w != end; ++w) {
-        const Index to = static_cast<Index>(*w);
+      for (const Index* w = graph.begin(v); w != graph.end(v); ++w) {
+        const Index to = *w;
         if (distance[to] <= before)
           continue;
         const double d = before + step_cost(scan, v, to);
