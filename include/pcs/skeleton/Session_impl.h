@@ -73,7 +73,7 @@ bool Session<ConcurrencyTag>::find_paths(pcs::internal::Progress& progress)
   const pcs::internal::Stage_timer timer(s.report.seconds.paths);
   if (s.options.do_mark_ground && !s.clutter.remove_walls_and_roofs(s.options.up))
     return internal::finish(s, Stage::paths, internal::end_of_paths, progress);
-  Links links = internal::used_links(s);
+  Compact_links links = internal::used_links(s);
   Linked_parts linked;
   if (!internal::remove_ground(s, links, linked, progress))
     return false;

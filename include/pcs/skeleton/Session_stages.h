@@ -173,9 +173,9 @@ std::optional<Vec3> root_hint(const Session_state<Tag>& s)
 }
 
 template <class Tag>
-Links used_links(const Session_state<Tag>& s)
+Compact_links used_links(const Session_state<Tag>& s)
 {
-  return neighbor_links<Tag>(s.scan, s.is_used(), s.options.axes.links);
+  return Compact_links(Tag(), s.scan, s.is_used(), s.options.axes.links);
 }
 
 /// What is known about the root before the neighbour graph is built.
@@ -183,7 +183,10 @@ enum class Known_root { none, foot_on_ground, points };
 
 /// Builds the graph of the used points, and finds the root unless its points are known.
 template <class Tag>
-void link_used(Session_state<Tag>& s, const Links& links, Known_root known, Linked_parts& linked)
+void link_used(Session_state<Tag>& s,
+               const Compact_links& links,
+               Known_root known,
+               Linked_parts& linked)
 {
   const Session_options& o = s.options;
   const auto find_root = [&](const Point_parts& parts) {
@@ -202,7 +205,7 @@ void link_used(Session_state<Tag>& s, const Links& links, Known_root known, Link
 }
 
 template <class Tag>
-void trace_layers(Session_state<Tag>& s, Links& links, Linked_parts& linked)
+void trace_layers(Session_state<Tag>& s, Compact_links& links, Linked_parts& linked)
 {
   s.paths = skeleton::trace_layers<Tag>(s.scan, s.root, s.options.layers, links, linked, s.layers);
 }
@@ -211,7 +214,7 @@ void trace_layers(Session_state<Tag>& s, Links& links, Linked_parts& linked)
 /// stopped it; in this case, the ground is not removed.
 template <class Tag>
 bool remove_ground(Session_state<Tag>& s,
-                   Links& links,
+                   Compact_links& links,
                    Linked_parts& linked,
                    pcs::internal::Progress& progress)
 {
@@ -342,7 +345,7 @@ bool remove_leaves(Session_state<Tag>& s)
   if (is_wood == s.is_used())
     return false;
   s.labels.remove_leaves(is_wood);
-  Links links = used_links(s);
+  Compact_links links = used_links(s);
   Linked_parts linked;
   link_used(s, links, Known_root::points, linked);
   trace_layers(s, links, linked);

@@ -177,7 +177,7 @@ BOOST_AUTO_TEST_CASE(a_post_beside_a_wall_goes_with_it_and_a_stem_farther_away_s
   mark_faces(yard.scan, walls, yard.is_used);
   BOOST_TEST(yard.used(wall) < 0.01);
   BOOST_TEST(yard.used(post) > 0.9);
-  const Links links = neighbor_links<CGAL::Sequential_tag>(yard.scan, yard.is_used, {});
+  const pcs::skeleton::Compact_links links(CGAL::Sequential_tag(), yard.scan, yard.is_used, {});
   const auto mark = [&](const std::vector<Flat_face>& faces) {
     return mark_beside_faces(yard.scan, faces, links, Wall_options(), yard.is_used);
   };

@@ -195,6 +195,34 @@ BOOST_AUTO_TEST_CASE(parts_are_those_of_boost)
   check(pcs::skeleton::connected_parts<Any_tag>(s.is_used, links));
 }
 
+BOOST_AUTO_TEST_CASE(compact_links_are_those_of_the_list)
+{
+  const Sheets s(2, 6000, 40);
+  Links list = pcs::skeleton::neighbor_links<Any_tag>(s.scan, s.is_used, {});
+  pcs::skeleton::Compact_links compact(Any_tag(), s.scan, s.is_used, {});
+  BOOST_TEST(compact.size() == list.size());
+  const Links others{{0, 7000}, {1, 8000}, {2, 9000}};
+  list.insert(list.end(), others.begin(), others.end());
+  compact.append(others);
+  const std::size_t n = list.size(), middle = n / 2;
+  for (const auto& [begin, end] : {std::make_pair(std::size_t(0), n),
+                                   std::make_pair(std::size_t(1), middle),
+                                   std::make_pair(middle, middle + 1),
+                                   std::make_pair(middle, n - 1),
+                                   std::make_pair(n - 2, n),
+                                   std::make_pair(n, n)}) {
+    std::size_t k = begin, wrong = 0;
+    compact.for_each(begin, end, [&](const Link& l) {
+      wrong += k >= end || l.first != list[k].first || l.second != list[k].second;
+      ++k;
+    });
+    BOOST_TEST(wrong == 0u);
+    BOOST_TEST(k == end);
+  }
+  BOOST_TEST((pcs::skeleton::connected_parts<Any_tag>(s.is_used, compact).part ==
+              pcs::skeleton::connected_parts<Any_tag>(s.is_used, list).part));
+}
+
 BOOST_AUTO_TEST_CASE(links_and_gaps_make_one_graph)
 {
   const Sheets s(1, 300, 0);
@@ -215,9 +243,9 @@ BOOST_AUTO_TEST_CASE(links_and_gaps_make_one_graph)
   for (Index v = 0; v < rows.size(); ++v)
     BOOST_TEST(std::equal(rows[v].begin(), rows[v].end(), expected.begin(v), expected.end(v)));
   const Links gaps{all.front(), all.back()};
-  const pcs::skeleton::Neighbor_link_flags flags(Any_tag(), s.scan, s.is_used, {});
-  BOOST_TEST(flags.count(0, s.scan.size()) == all.size());
-  BOOST_TEST(are_equal(pcs::skeleton::graph_of(flags, gaps),
+  pcs::skeleton::Compact_links compact(Any_tag(), s.scan, s.is_used, {});
+  compact.append(gaps);
+  BOOST_TEST(are_equal(pcs::skeleton::graph_of(s.scan.size(), compact),
                        pcs::skeleton::graph_of(s.scan.size(), all, gaps)));
   BOOST_TEST(pcs::skeleton::graph_of(3, Links()).number_of_edges() == 0u);
 }

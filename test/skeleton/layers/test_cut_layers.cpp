@@ -17,6 +17,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -51,7 +52,7 @@ struct Linked_scan
 {
   pcs::skeleton::Scan scan;
   std::vector<std::uint8_t> is_used;
-  pcs::skeleton::Links links;
+  std::optional<pcs::skeleton::Compact_links> links;
   pcs::skeleton::Point_parts parts;
   std::vector<Index> root;
 
@@ -59,20 +60,20 @@ struct Linked_scan
   {
     pcs::skeleton::prepare_scan<CGAL::Sequential_tag>(points, Vec3::UnitZ(), scan);
     is_used.assign(scan.size(), 1);
-    links = pcs::skeleton::neighbor_links<CGAL::Sequential_tag>(scan, is_used, {});
-    parts = pcs::skeleton::connected_parts<CGAL::Sequential_tag>(is_used, links);
+    links.emplace(CGAL::Sequential_tag(), scan, is_used, pcs::skeleton::Link_rule());
+    parts = pcs::skeleton::connected_parts<CGAL::Sequential_tag>(is_used, *links);
     root = pcs::skeleton::find_root<CGAL::Sequential_tag>(scan,
                                                           is_used,
-                                                          links,
+                                                          *links,
                                                           parts,
                                                           Vec3::UnitZ(),
                                                           {});
   }
   pcs::skeleton::Layer_tree layers() const
   {
-    const auto graph = pcs::skeleton::graph_of(scan.size(), links);
+    const auto graph = pcs::skeleton::graph_of(scan.size(), *links);
     return pcs::skeleton::layer_tree<CGAL::Sequential_tag>(scan,
-                                                           links,
+                                                           *links,
                                                            shortest_paths(scan, graph, root));
   }
   Vec3 place(Index i) const { return scan.frame.to_input(scan.points[i]); }

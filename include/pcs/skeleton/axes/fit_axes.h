@@ -284,11 +284,11 @@ bool fit_chains(const Scan& scan,
 }
 
 /// Returns the point of every connected component that is nearest to an axis.
-template <class ConcurrencyTag>
+template <class ConcurrencyTag, class LinkRange>
 std::vector<Index> nearest_to_axes(const Scan& scan,
                                    const Axis_set& set,
                                    const std::vector<std::uint8_t>& is_used,
-                                   const Links& links)
+                                   const LinkRange& links)
 {
   const std::size_t n = scan.size();
   Point_sets sets = united_points<ConcurrencyTag>(n, links, [](const Link&) { return true; });
@@ -337,7 +337,7 @@ Layer_tree layers_of_rest(const Scan& scan,
                           const std::vector<std::uint8_t>& is_used,
                           const Link_rule& rule)
 {
-  const Links links = neighbor_links<ConcurrencyTag>(scan, is_used, rule);
+  const Compact_links links(ConcurrencyTag(), scan, is_used, rule);
   const std::vector<Index> sources = nearest_to_axes<ConcurrencyTag>(scan, set, is_used, links);
   const Shortest_paths paths = shortest_paths(scan, graph_of(scan.size(), links), sources);
   return layer_tree<ConcurrencyTag>(scan, links, paths);

@@ -45,7 +45,7 @@ public:
   /// Removes the other faces and the remaining components beside them. `find_links` returns the
   /// links between the used points. Returns whether any points were removed.
   template <class FindLinks>
-  bool leave_out_rest(const FindLinks& find_links, Links& links)
+  bool leave_out_rest(const FindLinks& find_links, Compact_links& links)
   {
     bool is_found = false;
     for (int round = 1; round < m_rules.rounds && leave_out(find_faces()); ++round)

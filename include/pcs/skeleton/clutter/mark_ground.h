@@ -94,7 +94,7 @@ struct Low_bins
 /// Returns the points of the stem in each bin. The stem is tracked downwards from the dominant
 /// component above the bins, by size times height, through connected components.
 inline std::vector<std::vector<Index>> stem_in_bins(const Scan& scan,
-                                                    const Links& links,
+                                                    const Compact_links& links,
                                                     const std::vector<double>& height_of,
                                                     const std::vector<std::uint8_t>& is_used,
                                                     const Low_bins& bins)
@@ -103,15 +103,15 @@ inline std::vector<std::vector<Index>> stem_in_bins(const Scan& scan,
   const std::size_t count = bins.members.size();
   Point_sets above(n), sets(n); // connected components above all bins, and in each of them
   Links across;
-  for (const Link& l : links) {
+  for_each_link(links, [&](const Link& l) {
     if (!is_used[l.first] || !is_used[l.second])
-      continue;
+      return;
     const Index a = bins.bin[l.first], b = bins.bin[l.second];
     if (a == b)
       (a == none ? above : sets).unite(l.first, l.second);
     else
       across.push_back(l);
-  }
+  });
   std::vector<Index> size(n, 0);
   std::vector<double> top(n, bins.low);
   for (Index i = 0; i < n; ++i)
@@ -202,7 +202,7 @@ class Ground_finder
 {
 public:
   Ground_finder(const Scan& scan,
-                const Links& links,
+                const Compact_links& links,
                 const Vec3& up,
                 const Ground_options& rules,
                 const std::vector<std::uint8_t>& is_used)
@@ -332,7 +332,7 @@ private:
   }
 
   const Scan& m_scan;
-  const Links& m_links;
+  const Compact_links& m_links;
   Vec3 m_up;
   const Ground_options& m_rules;
   const std::vector<std::uint8_t>& m_is_used;
@@ -355,7 +355,7 @@ struct Ground
   links between neighbours. O(n log n).
 */
 inline Ground mark_ground(const Scan& scan,
-                          const Links& links,
+                          const Compact_links& links,
                           const Vec3& up,
                           const Ground_options& rules,
                           std::vector<std::uint8_t>& is_used)

@@ -379,7 +379,7 @@ inline std::size_t mark_faces(const Scan& scan,
 /// returns the number of their points. `links`: links between neighbours. O(faces x n).
 inline std::size_t mark_beside_faces(const Scan& scan,
                                      const std::vector<Flat_face>& faces,
-                                     const Links& links,
+                                     const Compact_links& links,
                                      const Wall_options& rules,
                                      std::vector<std::uint8_t>& is_used)
 {

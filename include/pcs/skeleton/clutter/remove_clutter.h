@@ -70,7 +70,7 @@ public:
 
   /// Marks the ground among the points with `links`, and calls `meanwhile()` on another thread.
   template <class Meanwhile>
-  void mark_ground(const Links& links, const Vec3& up, const Meanwhile& meanwhile)
+  void mark_ground(const Compact_links& links, const Vec3& up, const Meanwhile& meanwhile)
   {
     m_is_above_ground = m_labels.flags();
     m_ground = Ground();
@@ -84,7 +84,7 @@ public:
   /// Removes the marked ground and all other flat faces. `find_links()` returns the links between
   /// the used points. Returns whether `links` changed.
   template <class FindLinks>
-  bool remove_ground_and_faces(const FindLinks& find_links, Links& links)
+  bool remove_ground_and_faces(const FindLinks& find_links, Compact_links& links)
   {
     m_report.number_of_ground_points = m_ground.number_of_points;
     const bool has_ground = m_ground.number_of_points > 0;

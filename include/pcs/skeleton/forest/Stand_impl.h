@@ -37,18 +37,13 @@ struct Stand_state
   Scan_frame frame;
   std::vector<Found_stem> stems;     ///< grouped by tree; in coordinates of `frame`
   std::vector<Index> point_of_input; ///< point of the thinned scan of each input point
-  //! of these points; empty if nothing was detected or assigned
-  std::vector<Index> tree_of_point, stem_of_point;
+  std::vector<Index> tree_of_point;  ///< of these points; empty if nothing was assigned
   //! of these points, relative to the median of the points of trees [-]; empty as above
   std::vector<float> spacing_of_point;
 
   Index tree_of_input(std::size_t i) const
   {
     return tree_of_point.empty() ? none : tree_of_point[point_of_input[i]];
-  }
-  Index stem_of_input(std::size_t i) const
-  {
-    return stem_of_point.empty() ? none : stem_of_point[point_of_input[i]];
   }
   double spacing_of_input(std::size_t i) const
   {
@@ -114,7 +109,8 @@ inline std::vector<float> relative_spacings(const Scan& scan,
   return result;
 }
 
-/// Detects the stems. Assigns points to trees only if `are_wanted(stand)` holds for these stems.
+/// Detects the stems. Assigns points to trees only if `are_wanted(stand, stem_of_point)` holds for
+/// these stems and the stems of the points of the thinned scan.
 /// Returns `false` if the work was cancelled.
 template <class ConcurrencyTag, class Are_wanted>
 bool find_stand(const Read_input& read_input,
@@ -151,9 +147,7 @@ bool find_stand(const Read_input& read_input,
   if (!finder.find(progress))
     return false;
   stand.stems = finder.stems();
-  if (!stand.stems.empty())
-    stand.stem_of_point = finder.stem_of_point();
-  if (!are_wanted(stand))
+  if (!are_wanted(stand, finder.stem_of_point()))
     return progress(1);
   if (!finder.label(progress))
     return false;
@@ -162,17 +156,22 @@ bool find_stand(const Read_input& read_input,
   return true;
 }
 
-/// Returns which stems of `coarse` are sparsely sampled in `stand`. O(points).
-inline std::vector<bool>
-sparse_stems(const Stand_state& coarse, const Stand_options& rules, const Stand_state& stand)
+/// Returns which stems of `coarse` are sparsely sampled in `stand`. `stem_of_point` is that of the
+/// points of `coarse`. O(points).
+inline std::vector<bool> sparse_stems(const Stand_state& coarse,
+                                      const std::vector<Index>& stem_of_point,
+                                      const Stand_options& rules,
+                                      const Stand_state& stand)
 {
   std::vector<bool> result(coarse.stems.size(), false);
   if (coarse.stems.empty() || stand.spacing_of_point.empty())
     return result;
   std::vector<std::vector<float>> spacings(coarse.stems.size());
-  for (std::size_t i = 0; i < coarse.point_of_input.size(); ++i)
-    if (coarse.stem_of_input(i) != none)
-      spacings[coarse.stem_of_input(i)].push_back(stand.spacing_of_point[stand.point_of_input[i]]);
+  for (std::size_t i = 0; i < coarse.point_of_input.size(); ++i) {
+    const Index stem = stem_of_point[coarse.point_of_input[i]];
+    if (stem != none)
+      spacings[stem].push_back(stand.spacing_of_point[stand.point_of_input[i]]);
+  }
   for (std::size_t s = 0; s < result.size(); ++s)
     result[s] = double(pcs::internal::lower_median(spacings[s])) >= rules.sparse;
   return result;
@@ -269,7 +268,7 @@ bool find_trees(const Read_input& read_input,
   const double side = rules.cell * hints.breast_height;
   internal::Stand_state stand, coarse;
   progress.stage(0, 0.75);
-  const auto always = [](const internal::Stand_state&) { return true; };
+  const auto always = [](const auto&, const auto&) { return true; };
   if (!internal::find_stand<ConcurrencyTag>(read_input,
                                             side,
                                             hints,
@@ -279,8 +278,9 @@ bool find_trees(const Read_input& read_input,
                                             stand))
     return false;
   std::vector<bool> is_sparse;
-  const auto has_sparse_stems = [&](const internal::Stand_state& other) {
-    is_sparse = internal::sparse_stems(other, rules, stand);
+  const auto has_sparse_stems = [&](const internal::Stand_state& other,
+                                    const std::vector<Index>& stem_of_point) {
+    is_sparse = internal::sparse_stems(other, stem_of_point, rules, stand);
     return std::find(is_sparse.begin(), is_sparse.end(), true) != is_sparse.end();
   };
   progress.stage(0.75, 1);

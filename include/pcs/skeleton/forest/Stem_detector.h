@@ -26,6 +26,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -138,7 +139,6 @@ public:
   /// Performs the first fit and detects its stems. Returns `false` if the work was cancelled.
   bool find(pcs::internal::Progress& progress)
   {
-    m_tree_of_point.assign(m_scan.size(), none);
     m_stem_of_point.assign(m_scan.size(), none);
     m_is_solid = solid_points();
     const std::vector<Index> lowest = link_parts();
@@ -155,11 +155,13 @@ public:
   /// Returns `false` if the work was cancelled.
   bool label(pcs::internal::Progress& progress)
   {
-    if (m_feet.empty())
+    if (m_feet.empty()) {
+      m_tree_of_point.assign(m_scan.size(), none);
       return progress(1);
+    }
     m_axes = Axis_set(); // of the first fit
     Shortest_paths paths = paths_from(m_feet);
-    const std::vector<Index> predecessor = paths.predecessor;
+    const std::vector<Index> predecessor = paths.predecessor; // without the distances
     if (!fit_along(std::move(paths), progress, 0.75, 1))
       return false;
     label_axes();
@@ -168,31 +170,22 @@ public:
   }
 
   const std::vector<Found_stem>& stems() const { return m_stems; } ///< grouped by tree
-  /// Returns the tree of each scan point, or `none`.
+  /// Returns the tree of each scan point, or `none`; empty before `label()`.
   const std::vector<Index>& tree_of_point() const { return m_tree_of_point; }
   /// Returns the stem of each scan point in the lowest part of a stem, or `none`.
   const std::vector<Index>& stem_of_point() const { return m_stem_of_point; }
 
 private:
-  // The list of links is made again where it is needed: it is larger than the points.
-  Links used_links() const
-  {
-    Links links = neighbor_links<ConcurrencyTag>(m_scan, m_is_used, m_options.axes.links);
-    links.insert(links.end(), m_gaps.begin(), m_gaps.end());
-    return links;
-  }
-
-  /// Finds the links across gaps. Returns the points within one level-set thickness of the lowest
-  /// point of each component.
+  /// Finds the links between neighbours and across gaps. Returns the points within one level-set
+  /// thickness of the lowest point of each component.
   std::vector<Index> link_parts()
   {
-    Links links = used_links(); // without gaps
-    m_gaps = links_across_gaps(m_scan,
-                               m_is_used,
-                               m_options.axes.links,
-                               connected_parts<ConcurrencyTag>(m_is_used, links));
-    links.insert(links.end(), m_gaps.begin(), m_gaps.end());
-    const Point_parts parts = connected_parts<ConcurrencyTag>(m_is_used, links);
+    m_links.emplace(ConcurrencyTag(), m_scan, m_is_used, m_options.axes.links);
+    m_links->append(links_across_gaps(m_scan,
+                                      m_is_used,
+                                      m_options.axes.links,
+                                      connected_parts<ConcurrencyTag>(m_is_used, *m_links)));
+    const Point_parts parts = connected_parts<ConcurrencyTag>(m_is_used, *m_links);
     std::vector<double> low(m_scan.size(), std::numeric_limits<double>::infinity());
     for (Index i = 0; i < m_scan.size(); ++i)
       if (m_is_used[i])
@@ -207,13 +200,12 @@ private:
 
   Shortest_paths paths_from(const std::vector<Index>& sources) const
   {
-    const Neighbor_link_flags links(ConcurrencyTag(), m_scan, m_is_used, m_options.axes.links);
-    return shortest_paths(m_scan, graph_of(links, m_gaps), sources);
+    return shortest_paths(m_scan, graph_of(m_scan.size(), *m_links), sources);
   }
 
   Layer_tree layers_along(const Shortest_paths& paths) const
   {
-    Layer_tree layers = layer_tree<ConcurrencyTag>(m_scan, used_links(), paths);
+    Layer_tree layers = layer_tree<ConcurrencyTag>(m_scan, *m_links, paths);
     merge_ring_arcs<ConcurrencyTag>(m_scan, m_options.layers.rings, layers);
     return layers;
   }
@@ -237,7 +229,7 @@ private:
     std::vector<std::uint8_t> is_solid = m_may_be_ground;
     const Point_parts parts = connected_parts<ConcurrencyTag>(
         is_solid,
-        neighbor_links<ConcurrencyTag>(m_scan, is_solid, m_options.axes.links));
+        Compact_links(ConcurrencyTag(), m_scan, is_solid, m_options.axes.links));
     for (std::size_t i = 0; i < is_solid.size(); ++i)
       is_solid[i] = is_solid[i] && parts.size[parts.part[i]] >= m_rules.solid_part;
     return is_solid;
@@ -335,7 +327,7 @@ private:
     return 0;
   }
 
-  /// Returns the points in the lowest part of all stems, and assigns them to their trees.
+  /// Returns the points in the lowest part of all stems, and assigns them to their stems.
   std::vector<Index> points_of_feet()
   {
     std::vector<Index> stem_of_axis(m_axes.axes.size(), none), sources;
@@ -346,7 +338,6 @@ private:
       if (s == none || m_scan.points[i].z() > m_stems[s].foot.z() + m_rules.root * m_breast_height)
         continue;
       m_stem_of_point[i] = s;
-      m_tree_of_point[i] = m_stems[s].tree;
       sources.push_back(i);
     }
     return sources;
@@ -385,6 +376,9 @@ private:
   /// nearest foot.
   void label_points(const std::vector<Index>& predecessor)
   {
+    m_tree_of_point.assign(m_scan.size(), none);
+    for (const Index i : m_feet)
+      m_tree_of_point[i] = m_stems[m_stem_of_point[i]].tree;
     inherit(m_tree_of_point, [&](Index i) { return predecessor[i] == i ? none : predecessor[i]; });
     for (Index i = 0; i < m_scan.size(); ++i)
       if (m_axes.is_covered(i) && m_tree_of_axis[m_axes.axis_of_point[i]] != none)
@@ -439,7 +433,7 @@ private:
   const Session_options& m_options;
   const Stand_options& m_rules;
   std::vector<std::uint8_t> m_is_solid;
-  Links m_gaps; ///< links across gaps
+  std::optional<Compact_links> m_links; ///< between neighbours, and across gaps
   Axis_set m_axes;
   std::vector<Found_stem> m_stems;
   std::vector<Index> m_stem_of_point; ///< of points at the feet

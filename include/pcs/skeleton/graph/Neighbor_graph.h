@@ -89,16 +89,20 @@ private:
   std::vector<Index> m_size, m_parent;
 };
 
-/// The links between neighbours among some points, each once: two bytes per point.
-class Neighbor_link_flags
+/*!
+  The links between neighbours among the points of `is_used`, each once, nearly in increasing order,
+  and further links. They are numbered like those of a list, but need only two bytes per point. The
+  scan must remain unchanged.
+*/
+class Compact_links
 {
 public:
   template <class ConcurrencyTag>
-  Neighbor_link_flags(ConcurrencyTag,
-                      const Scan& scan,
-                      const std::vector<std::uint8_t>& is_used,
-                      const Link_rule& rule)
-    : m_scan(scan), m_flags(scan.size())
+  Compact_links(ConcurrencyTag,
+                const Scan& scan,
+                const std::vector<std::uint8_t>& is_used,
+                const Link_rule& rule)
+    : m_scan(&scan), m_flags(scan.size()), m_first((scan.size() + block - 1) / block + 1, 0)
   {
     const auto is_link = [&](Index i, Index j) {
       const double longest = std::max(rule.longest(scan, i), rule.longest(scan, j));
@@ -110,74 +114,98 @@ public:
         does |= k == j; // no early exit, to avoid branch misprediction
       return does;
     };
-    pcs::internal::for_each_index<ConcurrencyTag>(scan.size(), [&](std::size_t k) {
-      const Index i = static_cast<Index>(k);
-      unsigned bits = 0;
-      for (std::size_t b = 0; is_used[i] && b < neighbors_per_point; ++b) {
-        const Index j = scan.neighbors[i][b];
-        // two mutual neighbours list their link with the smaller index
-        if (j != none && is_used[j] && is_link(i, j) && !(j < i && knows(j, i)))
+    const auto mark = [&](std::size_t begin, std::size_t end) {
+      std::size_t count = 0;
+      for (std::size_t k = begin; k < end; ++k) {
+        const Index i = static_cast<Index>(k);
+        if (!is_used[i])
+          continue;
+        unsigned bits = 0;
+        for (std::size_t b = 0; b < neighbors_per_point; ++b) {
+          const Index j = scan.neighbors[i][b];
+          // two mutual neighbours list their link with the smaller index
+          if (j == none || !is_used[j] || !is_link(i, j) || (j < i && knows(j, i)))
+            continue;
           bits |= 1U << b;
+          ++count;
+        }
+        m_flags[i] = static_cast<std::uint16_t>(bits);
       }
-      m_flags[i] = static_cast<std::uint16_t>(bits);
-    });
+      m_first[begin / block + 1] = count;
+    };
+    pcs::internal::for_each_block<ConcurrencyTag>(scan.size(), block, mark);
+    for (std::size_t b = 1; b < m_first.size(); ++b)
+      m_first[b] += m_first[b - 1];
   }
 
-  /// Calls `f(link)` for the links that are listed with the points of `[begin, end)`, which are
-  /// nearly in increasing order.
+  std::size_t size() const { return m_first.back() + m_others.size(); }
+
+  /// Appends links.
+  void append(const Links& others)
+  {
+    m_others.insert(m_others.end(), others.begin(), others.end());
+  }
+
+  /// Calls `f(link)` for the links with numbers in `[begin, end)`.
   template <class F>
   void for_each(std::size_t begin, std::size_t end, const F& f) const
   {
-    for (std::size_t k = begin; k < end; ++k) {
-      const Index i = static_cast<Index>(k);
-      for (std::size_t b = 0; m_flags[i] >> b != 0; ++b)
-        if (m_flags[i] >> b & 1) {
-          const Index j = m_scan.neighbors[i][b];
-          f(Link{std::min(i, j), std::max(i, j)});
+    const auto after = std::upper_bound(m_first.begin(), m_first.end(), begin);
+    std::size_t number = *(after - 1);
+    const auto first = static_cast<std::size_t>(after - 1 - m_first.begin()) * block;
+    for (std::size_t i = first; i < m_flags.size() && number < end; ++i)
+      for (std::size_t b = 0; m_flags[i] >> b != 0 && number < end; ++b)
+        if ((m_flags[i] >> b & 1) != 0 && number++ >= begin) {
+          const Index j = m_scan->neighbors[i][b];
+          f(Link{std::min(static_cast<Index>(i), j), std::max(static_cast<Index>(i), j)});
         }
-    }
+    for (std::size_t k = std::max(begin, m_first.back()); k < end; ++k)
+      f(m_others[k - m_first.back()]);
   }
-
-  /// Returns the number of links that are listed with the points of `[begin, end)`.
-  std::size_t count(std::size_t begin, std::size_t end) const
-  {
-    std::size_t count = 0;
-    for (std::size_t i = begin; i < end; ++i)
-      for (unsigned bits = m_flags[i]; bits != 0; bits &= bits - 1)
-        ++count;
-    return count;
-  }
-
-  std::size_t number_of_points() const { return m_flags.size(); }
 
 private:
   static_assert(neighbors_per_point <= 16, "pcs: one bit per neighbour");
+  static constexpr std::size_t block = 1024;
 
-  const Scan& m_scan;
+  const Scan* m_scan;
   std::vector<std::uint16_t> m_flags; ///< bit b: the link to the b-th neighbour
+  std::vector<std::size_t> m_first;   ///< number of the first link of each block of points
+  Links m_others;
 };
 
-/// Returns the links between neighbours among the points of `is_used`, each once, nearly in
-/// increasing order.
+/// Calls `f(link)` for the links with numbers in `[begin, end)`.
+template <class F>
+void for_each_link(const Compact_links& links, std::size_t begin, std::size_t end, const F& f)
+{
+  links.for_each(begin, end, f);
+}
+template <class F>
+void for_each_link(const Links& links, std::size_t begin, std::size_t end, const F& f)
+{
+  for (std::size_t k = begin; k < end; ++k)
+    f(links[k]);
+}
+template <class LinkRange, class F>
+void for_each_link(const LinkRange& links, const F& f)
+{
+  for_each_link(links, 0, links.size(), f);
+}
+
+/// Returns a list of the links between neighbours among the points of `is_used`.
 template <class ConcurrencyTag>
 Links neighbor_links(const Scan& scan,
                      const std::vector<std::uint8_t>& is_used,
                      const Link_rule& rule)
 {
-  const std::size_t n = scan.size(), block = 4096, number_of_blocks = (n + block - 1) / block;
-  const Neighbor_link_flags flags(ConcurrencyTag(), scan, is_used, rule);
-  std::vector<std::size_t> first(number_of_blocks + 1, 0);
-  pcs::internal::for_each_block<ConcurrencyTag>(n, block, [&](std::size_t begin, std::size_t end) {
-    first[begin / block + 1] = flags.count(begin, end);
-  });
-  for (std::size_t b = 0; b < number_of_blocks; ++b)
-    first[b + 1] += first[b];
+  const Compact_links compact(ConcurrencyTag(), scan, is_used, rule);
+  const std::size_t n = compact.size();
   Links links;
-  links.reserve(first.back() + first.back() / 16); // for links that close gaps
-  links.resize(first.back());
+  links.reserve(n + n / 16); // for links that close gaps
+  links.resize(n);
+  constexpr std::size_t block = std::size_t(1) << 15;
   pcs::internal::for_each_block<ConcurrencyTag>(n, block, [&](std::size_t begin, std::size_t end) {
-    Link* next = links.data() + first[begin / block];
-    flags.for_each(begin, end, [&](const Link& l) { *next++ = l; });
+    Link* next = links.data() + begin;
+    compact.for_each(begin, end, [&](const Link& l) { *next++ = l; });
   });
   return links;
 }
@@ -187,32 +215,31 @@ Links neighbor_links(const Scan& scan,
   are united in parallel if both ends belong to one block of points, which is nearly always true in
   spatial order; the remaining links follow sequentially.
 */
-template <class ConcurrencyTag, class IsWanted>
-Point_sets united_points(std::size_t n, const Links& links, const IsWanted& is_wanted)
+template <class ConcurrencyTag, class LinkRange, class IsWanted>
+Point_sets united_points(std::size_t n, const LinkRange& links, const IsWanted& is_wanted)
 {
   constexpr std::size_t block = std::size_t(1) << 17;
   const std::size_t number_of_blocks = (links.size() + block - 1) / block;
   // of the blocks of points
   std::vector<Index> border(number_of_blocks + 1, static_cast<Index>(n));
   for (std::size_t b = 0; b < number_of_blocks; ++b)
-    border[b] = b == 0 ? 0 : std::max(border[b - 1], links[b * block].first);
+    for_each_link(links, b * block, b * block + 1, [&](const Link& l) {
+      border[b] = b == 0 ? 0 : std::max(border[b - 1], l.first);
+    });
   Point_sets sets(n);
   std::vector<std::vector<Link>> rest(number_of_blocks);
-  pcs::internal::for_each_block<ConcurrencyTag>(links.size(),
-                                                block,
-                                                [&](std::size_t begin, std::size_t end) {
-                                                  const std::size_t b = begin / block;
-                                                  for (std::size_t k = begin; k < end; ++k) {
-                                                    const Link& l = links[k];
-                                                    if (!is_wanted(l))
-                                                      continue;
-                                                    if (l.first >= border[b] &&
-                                                        l.second < border[b + 1])
-                                                      sets.unite(l.first, l.second);
-                                                    else
-                                                      rest[b].push_back(l);
-                                                  }
-                                                });
+  const auto unite = [&](std::size_t begin, std::size_t end) {
+    const std::size_t b = begin / block;
+    for_each_link(links, begin, end, [&](const Link& l) {
+      if (!is_wanted(l))
+        return;
+      if (l.first >= border[b] && l.second < border[b + 1])
+        sets.unite(l.first, l.second);
+      else
+        rest[b].push_back(l);
+    });
+  };
+  pcs::internal::for_each_block<ConcurrencyTag>(links.size(), block, unite);
   for (const std::vector<Link>& part : rest)
     for (const Link& l : part)
       sets.unite(l.first, l.second);
@@ -236,8 +263,8 @@ struct Point_parts
 };
 
 /// Returns the connected components of the points of `is_used`.
-template <class ConcurrencyTag>
-Point_parts connected_parts(const std::vector<std::uint8_t>& is_used, const Links& links)
+template <class ConcurrencyTag, class LinkRange>
+Point_parts connected_parts(const std::vector<std::uint8_t>& is_used, const LinkRange& links)
 {
   const std::size_t n = is_used.size();
   Point_sets sets = united_points<ConcurrencyTag>(n, links, [&](const Link& l) {
@@ -417,21 +444,12 @@ private:
 };
 
 /// Builds a graph from links and those that close gaps, each in both directions.
-inline Neighbor_graph graph_of(std::size_t n, const Links& links, const Links& gaps = Links())
+template <class LinkRange>
+Neighbor_graph graph_of(std::size_t n, const LinkRange& links, const Links& gaps = Links())
 {
   return Neighbor_graph(n, [&](const auto& f) {
-    std::for_each(links.begin(), links.end(), f);
-    std::for_each(gaps.begin(), gaps.end(), f);
-  });
-}
-
-/// Builds the same graph without a list of the links.
-inline Neighbor_graph graph_of(const Neighbor_link_flags& links, const Links& gaps = Links())
-{
-  const std::size_t n = links.number_of_points();
-  return Neighbor_graph(n, [&](const auto& f) {
-    links.for_each(0, n, f);
-    std::for_each(gaps.begin(), gaps.end(), f);
+    for_each_link(links, f);
+    for_each_link(gaps, f);
   });
 }
 

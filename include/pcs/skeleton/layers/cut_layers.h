@@ -130,9 +130,9 @@ void vote_for_parents(const std::vector<Index>& predecessor, Layer_tree& tree)
   connected components of these level sets. `links` are the edges of the graph of `paths`;
   `spacings` is the thickness of a level set in spacings.
 */
-template <class ConcurrencyTag>
+template <class ConcurrencyTag, class LinkRange>
 Layer_tree layer_tree(const Scan& scan,
-                      const Links& links,
+                      const LinkRange& links,
                       const Shortest_paths& paths,
                       double spacings = layer_thickness)
 {

@@ -125,7 +125,7 @@ struct Stem
 /// contains the stems of the lowest points. O(points log points).
 inline Index stem_with_largest_catchment(const Scan& scan,
                                          const std::vector<double>& height,
-                                         const Links& links,
+                                         const Compact_links& links,
                                          const std::vector<Index>& stem_of_point,
                                          Index first)
 {
@@ -168,7 +168,7 @@ class Stem_search
 public:
   Stem_search(const Scan& scan,
               const std::vector<std::uint8_t>& is_used,
-              const Links& links,
+              const Compact_links& links,
               const Point_parts& parts,
               const Vec3& up,
               const Root_options& rules)
@@ -367,7 +367,7 @@ private:
   }
 
   const Scan& m_scan;
-  const Links& m_links;
+  const Compact_links& m_links;
   const Vec3& m_up;
   const Root_options& m_rules;
   const Point_parts& m_parts;
@@ -414,7 +414,7 @@ inline std::vector<Index> lowest_points(const Scan& scan,
 template <class ConcurrencyTag>
 std::vector<Index> find_root(const Scan& scan,
                              const std::vector<std::uint8_t>& is_used,
-                             const Links& links,
+                             const Compact_links& links,
                              const Point_parts& parts,
                              const Vec3& up,
                              const Root_options& rules)
@@ -431,7 +431,7 @@ template <class ConcurrencyTag>
 std::vector<Index> find_root_at(const Stem_foot& foot,
                                 const Scan& scan,
                                 const std::vector<std::uint8_t>& is_used,
-                                const Links& links,
+                                const Compact_links& links,
                                 const Point_parts& parts,
                                 const Vec3& up,
                                 const Root_options& rules)
@@ -458,7 +458,7 @@ template <class ConcurrencyTag>
 std::vector<Index> find_root_near(const Vec3& hint,
                                   const Scan& scan,
                                   const std::vector<std::uint8_t>& is_used,
-                                  const Links& links,
+                                  const Compact_links& links,
                                   const Point_parts& parts,
                                   const Vec3& up,
                                   const Root_options& rules)

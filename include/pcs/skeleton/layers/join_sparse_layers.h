@@ -20,7 +20,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -85,11 +84,13 @@ public:
   {
   }
 
-  void run(const Links& links, Point_sets& sets) const
+  template <class LinkRange>
+  void run(const LinkRange& links, Point_sets& sets) const
   {
     Links sparse; // few in most scans
-    std::copy_if(links.begin(), links.end(), std::back_inserter(sparse), [&](const Link& l) {
-      return m_level[l.first] > 0 && m_level[l.second] > 0;
+    for_each_link(links, [&](const Link& l) {
+      if (m_level[l.first] > 0 && m_level[l.second] > 0)
+        sparse.push_back(l);
     });
     for (int level = 1; level <= m_rules.doublings && !sparse.empty(); ++level) {
       sparse.erase(std::remove_if(sparse.begin(),
@@ -170,9 +171,9 @@ private:
   form rings. Twigs with single rows of points remain unchanged. `layer` is the level set of each
   point, `sets` has the level-set components. O(links + p log p) with p points in sparse level sets.
 */
-template <class ConcurrencyTag>
+template <class ConcurrencyTag, class LinkRange>
 void join_sparse_layers(const Scan& scan,
-                        const Links& links,
+                        const LinkRange& links,
                         const std::vector<double>& distance,
                         const std::vector<Index>& layer,
                         double thickness,

@@ -35,7 +35,7 @@ struct Layer_options
 template <class ConcurrencyTag>
 std::vector<Index> points_of_root(const Scan& scan,
                                   const std::vector<std::uint8_t>& is_used,
-                                  const Links& links,
+                                  const Compact_links& links,
                                   const Point_parts& parts,
                                   const std::optional<Vec3>& hint,
                                   const std::optional<Stem_foot>& foot,
@@ -57,7 +57,7 @@ std::vector<Index> points_of_root(const Scan& scan,
 template <class ConcurrencyTag, class FindRoot>
 void link_parts(const Scan& scan,
                 const std::vector<std::uint8_t>& is_used,
-                const Links& links,
+                const Compact_links& links,
                 const Link_rule& rule,
                 const FindRoot& find_root,
                 Linked_parts& linked)
@@ -79,13 +79,13 @@ template <class ConcurrencyTag>
 Shortest_paths trace_layers(const Scan& scan,
                             const std::vector<Index>& root,
                             const Layer_options& options,
-                            Links& links,
+                            Compact_links& links,
                             Linked_parts& linked,
                             Layer_tree& layers)
 {
   Shortest_paths paths = shortest_paths(scan, *linked.graph, root);
   linked.graph.reset();
-  links.insert(links.end(), linked.gaps.begin(), linked.gaps.end());
+  links.append(linked.gaps);
   layers = layer_tree<ConcurrencyTag>(scan, links, paths, options.thickness);
   merge_ring_arcs<ConcurrencyTag>(scan, options.rings, layers);
   return paths;
