@@ -65,6 +65,9 @@ public:
   /// Returns whether an input point is a leaf, by the caller or by the leaf-wood separation.
   bool is_leaf_of_input(std::size_t i) const;
 
+  /// Releases the memory of the neighbours and of the search of the scan. No further stage can run.
+  void release_neighbors();
+
   /// Returns the data of all stages, which Session_state.h defines.
   Session_state<ConcurrencyTag>& state() { return *m_state; }
 

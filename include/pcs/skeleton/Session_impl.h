@@ -159,6 +159,14 @@ const std::vector<std::uint8_t>& Session<ConcurrencyTag>::used_points() const
 }
 
 template <class ConcurrencyTag>
+void Session<ConcurrencyTag>::release_neighbors()
+{
+  Scan& scan = m_state->scan;
+  decltype(scan.neighbors)().swap(scan.neighbors);
+  scan.search.reset();
+}
+
+template <class ConcurrencyTag>
 Index Session<ConcurrencyTag>::node_of_input(std::size_t i) const
 {
   return tree().node_of_point[scan().point_of_input[i]];

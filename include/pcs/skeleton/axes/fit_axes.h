@@ -295,12 +295,16 @@ std::vector<Index> nearest_to_axes(const Scan& scan,
   // Separate search tree of covered points: among leaves, a search over all points would visit many
   // uncovered ones.
   std::vector<Vec3> covered;
-  for (Index i = 0; i < n; ++i)
-    if (set.is_covered(i))
-      covered.push_back(scan.points[i]);
+  const auto count = static_cast<std::size_t>(std::count_if(set.axis_of_point.begin(),
+                                                            set.axis_of_point.end(),
+                                                            [](Index a) { return a != none; }));
   constexpr double most = 0.9;
-  if (double(covered.size()) > most * double(n))
-    covered.clear();
+  if (double(count) <= most * double(n)) {
+    covered.reserve(count);
+    for (Index i = 0; i < n; ++i)
+      if (set.is_covered(i))
+        covered.push_back(scan.points[i]);
+  }
   const neighborhood::Nearest_neighbors search(covered);
   const auto distance = [&](const Vec3& p, double reach) {
     const auto near =

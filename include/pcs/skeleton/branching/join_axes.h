@@ -155,7 +155,16 @@ public:
             options[a] = options_of(static_cast<Index>(a));
         },
         16);
-    return choose(roots, options);
+    std::vector<Joint> joints(n);
+    for (std::size_t a = 0; a < n; ++a)
+      if (!options[a].empty())
+        joints[a] = options[a].front().joint();
+    Joint_tree tree(joints);
+    for (const Index root : roots)
+      for (const Index a : tree.reach(root))
+        std::vector<Option>().swap(options[a]); // large
+    change_joints(options, tree, joints);
+    return joints;
   }
 
 private:
@@ -186,6 +195,40 @@ private:
     }
   };
   static constexpr int parts = 6; ///< of a segment, at whose ends joints are tried
+
+  /// The axes that are connected to a root by their joints.
+  class Joint_tree
+  {
+  public:
+    explicit Joint_tree(const std::vector<Joint>& joints)
+      : m_children(joints.size()), m_is_reached(joints.size(), 0)
+    {
+      for (Index a = 0; a < joints.size(); ++a)
+        if (joints[a].parent != none)
+          m_children[joints[a].parent].push_back(a);
+    }
+
+    bool is_reached(Index a) const { return m_is_reached[a] != 0; }
+    /// Marks an axis and its descendants. Returns those that were not marked before.
+    std::vector<Index> reach(Index from)
+    {
+      std::vector<Index> stack{from}, reached;
+      while (!stack.empty()) {
+        const Index a = stack.back();
+        stack.pop_back();
+        if (m_is_reached[a])
+          continue;
+        m_is_reached[a] = 1;
+        reached.push_back(a);
+        stack.insert(stack.end(), m_children[a].begin(), m_children[a].end());
+      }
+      return reached;
+    }
+
+  private:
+    std::vector<std::vector<Index>> m_children;
+    std::vector<std::uint8_t> m_is_reached;
+  };
 
   /// Nodes of similar radii, so that only thick nodes need a large search radius.
   struct Level
@@ -260,8 +303,9 @@ private:
     return std::max(r, thinnest) / std::max(to, thinnest);
   }
   std::vector<Option> options_of(Index a) const;
-  static std::vector<Joint> choose(const std::vector<Index>& roots,
-                                   const std::vector<std::vector<Option>>& options);
+  static void change_joints(const std::vector<std::vector<Option>>& options,
+                            Joint_tree& tree,
+                            std::vector<Joint>& joints);
 
   const Axis_set& m_set;
   double m_spacing;
@@ -396,71 +440,59 @@ inline std::vector<Axis_joiner::Option> Axis_joiner::options_of(Index a) const
 }
 
 /*!
-  Selects the option of least cost for every axis except the roots. Cycles remain unreachable from a
-  root. They are resolved axis by axis: the next axis is the one whose change to a reachable parent
-  has the least additional cost.
+  Connects further axes with the tree. Every axis has its joint of least cost; those that are not
+  reached form cycles, or descend from them. They are resolved axis by axis: the next axis is the
+  one whose change to a reachable parent has the least additional cost. `options` are those of the
+  axes that are not reached.
 */
-inline std::vector<Joint> Axis_joiner::choose(const std::vector<Index>& roots,
-                                              const std::vector<std::vector<Option>>& options)
+inline void Axis_joiner::change_joints(const std::vector<std::vector<Option>>& options,
+                                       Joint_tree& tree,
+                                       std::vector<Joint>& joints)
 {
-  const std::size_t n = options.size();
-  std::vector<Index> chosen(n, 0);          // index of the option of each axis
+  const Index n = static_cast<Index>(joints.size());
   std::vector<std::size_t> first(n + 1, 0); // in `users`
-  std::vector<std::vector<Index>> children(n);
-  for (Index a = 0; a < n; ++a) {
-    if (!options[a].empty())
-      children[options[a].front().parent].push_back(a);
-    for (const Option& o : options[a])
+  for (const std::vector<Option>& of_axis : options)
+    for (const Option& o : of_axis)
       ++first[o.parent];
-  }
   std::partial_sum(first.begin(), first.end(), first.begin());
   std::vector<Index> users(first[n]); // axes with an option on an axis
   for (Index a = 0; a < n; ++a)
     for (const Option& o : options[a])
       users[--first[o.parent]] = a;
-  std::vector<std::uint8_t> is_reached(n, 0);
   // additional cost of a change, axis, index of the option
   using Change = std::tuple<double, Index, Index>;
   std::priority_queue<Change, std::vector<Change>, std::greater<Change>> changes;
   std::vector<Index> best(n, none); // index of the best option that is among the changes
-  const auto reach = [&](Index from) {
-    std::vector<Index> stack{from}, reached;
-    while (!stack.empty()) {
-      const Index a = stack.back();
-      stack.pop_back();
-      if (is_reached[a])
+  const auto offer = [&](Index parent) {
+    for (std::size_t u = first[parent]; u < first[parent + 1]; ++u) {
+      const Index a = users[u];
+      if (tree.is_reached(a))
         continue;
-      is_reached[a] = 1;
-      reached.push_back(a);
-      stack.insert(stack.end(), children[a].begin(), children[a].end());
+      // options are sorted: only those before the best so far are better
+      const std::size_t end = std::min<std::size_t>(best[a], options[a].size());
+      for (Index k = 0; k < end; ++k)
+        if (options[a][k].parent == parent) {
+          changes.emplace(options[a][k].cost - options[a].front().cost, a, k);
+          best[a] = k;
+          break;
+        }
     }
-    for (const Index b : reached)
-      for (std::size_t u = first[b]; u < first[b + 1]; ++u) {
-        const Index a = users[u];
-        // options are sorted: only earlier ones than the best are better
-        for (Index k = 0; !is_reached[a] && k < std::min<std::size_t>(best[a], options[a].size());
-             ++k)
-          if (options[a][k].parent == b) {
-            changes.emplace(options[a][k].cost - options[a][chosen[a]].cost, a, k);
-            best[a] = k;
-          }
-      }
   };
-  for (const Index root : roots)
-    reach(root);
+  for (Index a = 0; a < n; ++a)
+    if (tree.is_reached(a))
+      offer(a);
   while (!changes.empty()) {
     const auto [cost, a, k] = changes.top();
     changes.pop();
-    if (is_reached[a])
+    if (tree.is_reached(a))
       continue;
-    chosen[a] = k;
-    reach(a);
+    joints[a] = options[a][k].joint();
+    for (const Index b : tree.reach(a))
+      offer(b);
   }
-  std::vector<Joint> joints(n);
   for (Index a = 0; a < n; ++a)
-    if (is_reached[a] && !options[a].empty())
-      joints[a] = options[a][chosen[a]].joint();
-  return joints;
+    if (!tree.is_reached(a))
+      joints[a] = Joint();
 }
 
 } // namespace skeleton

@@ -149,7 +149,7 @@ bool find_stand(const Read_input& read_input,
   stand.stems = finder.stems();
   if (!are_wanted(stand, finder.stem_of_point()))
     return progress(1);
-  if (!finder.label(progress))
+  if (!finder.label(progress, [&] { session.release_neighbors(); }))
     return false;
   stand.tree_of_point = finder.tree_of_point();
   stand.spacing_of_point = relative_spacings(scan, stand.tree_of_point);

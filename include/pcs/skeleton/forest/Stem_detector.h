@@ -151,9 +151,11 @@ public:
     return true;
   }
 
-  /// Performs the second fit along the paths from the stems, and assigns all points to trees.
-  /// Returns `false` if the work was cancelled.
-  bool label(pcs::internal::Progress& progress)
+  /// Performs the second fit along the paths from the stems, and assigns all points to trees. Calls
+  /// `release()` as soon as neighbours and search of the scan are not needed any more. Returns
+  /// `false` if the work was cancelled.
+  template <class Release>
+  bool label(pcs::internal::Progress& progress, const Release& release)
   {
     if (m_feet.empty()) {
       m_tree_of_point.assign(m_scan.size(), none);
@@ -164,6 +166,8 @@ public:
     const std::vector<Index> predecessor = paths.predecessor; // without the distances
     if (!fit_along(std::move(paths), progress, 0.75, 1))
       return false;
+    m_links.reset();
+    release();
     label_axes();
     label_points(predecessor);
     return true;
