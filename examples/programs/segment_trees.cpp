@@ -135,11 +135,27 @@ nlohmann::ordered_json to_json(const Options& options, const pcs::Segmentation_r
           {"seconds", r.seconds}};
 }
 
+/// Writes the tree of each point as a 32-bit number, -1 for none.
+struct Label_map
+{
+  using key_type = std::size_t;
+  using value_type = std::size_t;
+  using reference = std::size_t;
+  using category = boost::writable_property_map_tag;
+
+  std::int32_t* labels;
+
+  friend void put(const Label_map& map, std::size_t point, std::size_t tree)
+  {
+    map.labels[point] = tree == pcs::npos ? -1 : static_cast<std::int32_t>(tree);
+  }
+};
+
 pcs::Segmentation_report
 segment(const pcs::IO::Point_table& table, const Options& options, std::vector<std::int32_t>& trees)
 {
   const std::size_t n = table.number_of_points();
-  std::vector<std::size_t> tree_of_point(n, pcs::npos);
+  trees.assign(n, -1);
   // points are represented by indices, and their attributes by property maps
   const auto indices = boost::make_iterator_range(boost::counting_iterator<std::size_t>(0),
                                                   boost::counting_iterator<std::size_t>(n));
@@ -151,7 +167,7 @@ segment(const pcs::IO::Point_table& table, const Options& options, std::vector<s
   };
   const pcs::Segmentation_report report = pcs::segment_trees(
       indices,
-      boost::make_iterator_property_map(tree_of_point.begin(), identity),
+      Label_map{trees.data()},
       pcs::parameters::point_map(
           boost::make_iterator_property_map(table.points().begin(), identity))
           .up_direction(up_direction<pcs::IO::Point_table::Kernel>(options.up.value_or("z")))
@@ -159,9 +175,6 @@ segment(const pcs::IO::Point_table& table, const Options& options, std::vector<s
           .do_remove_ground(!options.do_keep_ground)
           .callback(callback));
   line.clear();
-  trees.reserve(n);
-  for (const std::size_t t : tree_of_point)
-    trees.push_back(t == pcs::npos ? -1 : static_cast<std::int32_t>(t));
   return report;
 }
 
@@ -170,13 +183,21 @@ void write_trees(const pcs::IO::Point_table& table,
                  const pcs::Segmentation_report& report,
                  const std::vector<std::int32_t>& trees)
 {
-  std::vector<std::vector<std::size_t>> points(report.trees.size());
+  // the points of all trees, grouped by tree
+  std::vector<std::size_t> first(report.trees.size() + 1, 0);
+  for (std::size_t t = 0; t < report.trees.size(); ++t)
+    first[t + 1] = first[t] + report.trees[t].number_of_points;
+  std::vector<std::uint32_t> points(first.back());
+  std::vector<std::size_t> next(first.begin(), first.end() - 1);
   for (std::size_t i = 0; i < trees.size(); ++i)
     if (trees[i] >= 0)
-      points[static_cast<std::size_t>(trees[i])].push_back(i);
-  for (std::size_t t = 0; t < points.size(); ++t)
-    if (points[t].size() >= options.min_points) {
-      pcs::IO::Point_table tree = table.select(points[t]);
+      points[next[static_cast<std::size_t>(trees[i])]++] = static_cast<std::uint32_t>(i);
+  for (std::size_t t = 0; t < report.trees.size(); ++t)
+    if (report.trees[t].number_of_points >= options.min_points) {
+      const auto begin = points.begin();
+      const std::vector<std::size_t> chosen(begin + static_cast<std::ptrdiff_t>(first[t]),
+                                            begin + static_cast<std::ptrdiff_t>(first[t + 1]));
+      pcs::IO::Point_table tree = table.select(chosen);
       write_foot(report.trees[t].foot, tree);
       pcs::IO::write_points(file_of_tree(options, t), tree);
     }
