@@ -257,10 +257,11 @@ BOOST_AUTO_TEST_CASE(shortest_paths_are_those_of_boost)
   pcs::skeleton::Link_rule rule;
   rule.gap = 60;
   const Links links = pcs::skeleton::neighbor_links<Any_tag>(s.scan, s.is_used, rule);
-  const Links gaps = links_across_gaps(s.scan,
-                                       s.is_used,
-                                       rule,
-                                       pcs::skeleton::connected_parts<Any_tag>(s.is_used, links));
+  const Links gaps = pcs::skeleton::links_across_gaps<Any_tag>(
+      s.scan,
+      s.is_used,
+      rule,
+      pcs::skeleton::connected_parts<Any_tag>(s.is_used, links));
   BOOST_TEST(gaps.size() >= 4u);
   const Neighbor_graph graph = pcs::skeleton::graph_of(s.scan.size(), links, gaps);
   check_paths(s.scan, graph, {0});
@@ -305,7 +306,7 @@ BOOST_AUTO_TEST_CASE(gaps_are_closed_by_the_shortest_links)
           expected += d;
           ++number_expected;
         }
-      const Links gaps = links_across_gaps(s.scan, s.is_used, rule, parts);
+      const Links gaps = pcs::skeleton::links_across_gaps<Any_tag>(s.scan, s.is_used, rule, parts);
       for (const Link& l : gaps)
         found += (s.scan.points[l.first] - s.scan.points[l.second]).norm();
       BOOST_TEST_CONTEXT(number << " parts, gap " << gap)

@@ -166,7 +166,8 @@ BOOST_AUTO_TEST_CASE(a_gap_is_closed_where_it_is_narrowest)
     add_stem(Vec3(0, 0, 0), 0.1, 1, 0.015, random, points);
     add_stem(Vec3(0, 0, 1.2), 0.1, 0.5, 0.015, random, points);
     const Linked_scan s(points);
-    const auto gaps = pcs::skeleton::links_across_gaps(s.scan, s.is_used, {}, s.parts);
+    const auto gaps =
+        pcs::skeleton::links_across_gaps<CGAL::Sequential_tag>(s.scan, s.is_used, {}, s.parts);
     BOOST_REQUIRE(gaps.size() == 1u);
     double narrowest = 1;
     for (Index i = 0; i < s.scan.size(); ++i)

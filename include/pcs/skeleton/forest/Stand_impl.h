@@ -73,7 +73,10 @@ Ground_view view_ground(const Session<ConcurrencyTag>& session, double breast_he
   const Sparse_ground_options rules;
   const double height = breast_height / scan.frame.unit;
   const Sparse_ground of_all(scan, height, rules, is_used);
-  const Sparse_ground without_strays(scan, height, rules, leave_out_strays(scan, is_used));
+  const Sparse_ground without_strays(scan,
+                                     height,
+                                     rules,
+                                     leave_out_strays<ConcurrencyTag>(scan, is_used));
   const auto number_on = [&](const Sparse_ground& ground) {
     std::size_t count = 0;
     for (std::size_t i = 0; i < scan.size(); ++i)
@@ -82,7 +85,7 @@ Ground_view view_ground(const Session<ConcurrencyTag>& session, double breast_he
   };
   const bool has_strays = number_on(without_strays) > number_on(of_all);
   if (has_strays)
-    view.may_be_ground = leave_out_strays(scan, all);
+    view.may_be_ground = leave_out_strays<ConcurrencyTag>(scan, all);
   const Sparse_ground& ground = has_strays ? without_strays : of_all;
   if (has_ground || !ground.is_found())
     return view;

@@ -185,10 +185,11 @@ private:
   std::vector<Index> link_parts()
   {
     m_links.emplace(ConcurrencyTag(), m_scan, m_is_used, m_options.axes.links);
-    m_links->append(links_across_gaps(m_scan,
-                                      m_is_used,
-                                      m_options.axes.links,
-                                      connected_parts<ConcurrencyTag>(m_is_used, *m_links)));
+    m_links->append(
+        links_across_gaps<ConcurrencyTag>(m_scan,
+                                          m_is_used,
+                                          m_options.axes.links,
+                                          connected_parts<ConcurrencyTag>(m_is_used, *m_links)));
     const Point_parts parts = connected_parts<ConcurrencyTag>(m_is_used, *m_links);
     std::vector<double> low(m_scan.size(), std::numeric_limits<double>::infinity());
     for (Index i = 0; i < m_scan.size(); ++i)

@@ -281,6 +281,7 @@ namespace internal {
 
 /// Joins connected components of points by their shortest links, in rounds of the method of
 /// Boruvka.
+template <class ConcurrencyTag>
 class Gap_closer
 {
 public:
@@ -339,25 +340,60 @@ private:
     return number_of_others > 0;
   }
 
-  /// Finds the shortest link of each component except the largest, in the order of the points.
+  /// Finds the shortest link of each component except the largest; the first point decides ties.
+  /// Points are processed in waves of fixed size, whose searches end at the best distances of the
+  /// previous waves.
   void find_links()
   {
+    constexpr std::size_t block = 256, wave = 64 * block;
     const std::size_t n = m_scan.size();
     m_best.assign(n, {m_widest * m_widest, {none, none}});
     const std::vector<Index> around =
         m_cells ? m_cells->common_label(m_label) : std::vector<Index>();
-    for (Index i = 0; i < n; ++i) {
-      if (!m_is_used[i] || m_label[i] == m_largest ||
-          (m_cells && around[m_cells->cell_of(i)] == m_label[i]))
-        continue;
-      Best& b = m_best[m_label[i]];
-      const auto found =
-          m_scan.search->nearest_if(m_scan.points[i], std::sqrt(b.squared_distance), [&](Index j) {
-            return m_is_used[j] && m_label[j] != m_label[i];
+    std::vector<std::vector<std::pair<Index, Best>>> found(wave / block); // of blocks, by label
+    for (std::size_t first = 0; first < n; first += wave) {
+      const std::size_t count = std::min(wave, n - first);
+      pcs::internal::for_each_block<ConcurrencyTag>(
+          count,
+          block,
+          [&](std::size_t begin, std::size_t end) {
+            found[begin / block] = links_of(first + begin, first + end, around);
           });
-      if (found.squared_distance < b.squared_distance)
-        b = {found.squared_distance, {std::min(i, found.index), std::max(i, found.index)}};
+      for (auto& of_block : found) {
+        for (const auto& [label, best] : of_block)
+          if (best.squared_distance < m_best[label].squared_distance)
+            m_best[label] = best;
+        of_block.clear();
+      }
     }
+  }
+
+  /// Returns links of components that are shorter than the best so far, from the points of a block.
+  std::vector<std::pair<Index, Best>>
+  links_of(std::size_t begin, std::size_t end, const std::vector<Index>& around) const
+  {
+    std::vector<std::pair<Index, Best>> links;
+    for (std::size_t k = begin; k < end; ++k) {
+      const Index i = static_cast<Index>(k), label = m_label[i];
+      if (!m_is_used[i] || label == m_largest || (m_cells && around[m_cells->cell_of(i)] == label))
+        continue;
+      const auto own = std::find_if(links.begin(), links.end(), [&](const auto& link) {
+        return link.first == label;
+      });
+      const double best = (own == links.end() ? m_best[label] : own->second).squared_distance;
+      const auto near =
+          m_scan.search->nearest_if(m_scan.points[i],
+                                    (1 + 1e-15) * std::sqrt(best), // not less than the distance
+                                    [&](Index j) { return m_is_used[j] && m_label[j] != label; });
+      if (!(near.squared_distance < best))
+        continue;
+      const Best link{near.squared_distance, {std::min(i, near.index), std::max(i, near.index)}};
+      if (own == links.end())
+        links.emplace_back(label, link);
+      else
+        own->second = link;
+    }
+    return links;
   }
 
   /// Adds the links that join two components, shortest first. Returns `false` if there are none.
@@ -399,12 +435,13 @@ private:
   widest gap of the rule, by the method of Boruvka. Links are searched from the points of all
   components except the largest. If these are many, only points near other components are used.
 */
-inline Links links_across_gaps(const Scan& scan,
-                               const std::vector<std::uint8_t>& is_used,
-                               const Link_rule& rule,
-                               const Point_parts& parts)
+template <class ConcurrencyTag>
+Links links_across_gaps(const Scan& scan,
+                        const std::vector<std::uint8_t>& is_used,
+                        const Link_rule& rule,
+                        const Point_parts& parts)
 {
-  return internal::Gap_closer(scan, is_used, rule.gap * scan.spacing, parts)();
+  return internal::Gap_closer<ConcurrencyTag>(scan, is_used, rule.gap * scan.spacing, parts)();
 }
 
 /// The neighbours of each point in compressed rows, with every link in both directions. Costs are

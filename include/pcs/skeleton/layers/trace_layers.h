@@ -64,13 +64,12 @@ void link_parts(const Scan& scan,
 {
   linked.graph.reset(); // large
   const Point_parts parts = connected_parts<ConcurrencyTag>(is_used, links);
-  pcs::internal::invoke_both<ConcurrencyTag>([&] { find_root(parts); },
-                                             [&] {
-                                               linked.gaps =
-                                                   links_across_gaps(scan, is_used, rule, parts);
-                                               linked.graph =
-                                                   graph_of(scan.size(), links, linked.gaps);
-                                             });
+  pcs::internal::invoke_both<ConcurrencyTag>(
+      [&] { find_root(parts); },
+      [&] {
+        linked.gaps = links_across_gaps<ConcurrencyTag>(scan, is_used, rule, parts);
+        linked.graph = graph_of(scan.size(), links, linked.gaps);
+      });
 }
 
 /// Computes the shortest paths from `root`, and the tree of their level sets. Releases the graph,

@@ -14,8 +14,11 @@
 #ifndef PCS_SKELETON_SCAN_LEAVE_OUT_STRAYS_H
 #define PCS_SKELETON_SCAN_LEAVE_OUT_STRAYS_H
 
+#include <pcs/internal/parallel.h>
 #include <pcs/skeleton/model/Moments.h>
 #include <pcs/skeleton/model/Scan.h>
+
+#include <CGAL/tags.h>
 
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
@@ -68,14 +71,16 @@ inline bool continues_surface(const Scan& scan, Index i, const Stray_options& ru
 } // namespace internal
 
 /// Returns the points with `is_used` that are not stray points. O(n).
-inline std::vector<std::uint8_t> leave_out_strays(const Scan& scan,
-                                                  std::vector<std::uint8_t> is_used,
-                                                  const Stray_options& rules = {})
+template <class ConcurrencyTag = CGAL::Sequential_tag>
+std::vector<std::uint8_t> leave_out_strays(const Scan& scan,
+                                           std::vector<std::uint8_t> is_used,
+                                           const Stray_options& rules = {})
 {
-  for (Index i = 0; i < scan.size(); ++i)
+  pcs::internal::for_each_index<ConcurrencyTag>(scan.size(), [&](std::size_t i) {
     if (is_used[i] && scan.local_spacing[i] > rules.isolated * scan.spacing &&
-        !internal::continues_surface(scan, i, rules))
+        !internal::continues_surface(scan, static_cast<Index>(i), rules))
       is_used[i] = 0;
+  });
   return is_used;
 }
 

@@ -67,10 +67,11 @@ private:
   {
     const Link_rule rule;
     Links links = neighbor_links<ConcurrencyTag>(m_scan, m_is_used, rule);
-    const Links gaps = links_across_gaps(m_scan,
-                                         m_is_used,
-                                         rule,
-                                         connected_parts<ConcurrencyTag>(m_is_used, links));
+    const Links gaps =
+        links_across_gaps<ConcurrencyTag>(m_scan,
+                                          m_is_used,
+                                          rule,
+                                          connected_parts<ConcurrencyTag>(m_is_used, links));
     links.insert(links.end(), gaps.begin(), gaps.end());
     return links;
   }
