@@ -10,12 +10,17 @@ its results with the truth.
             --config inputs='["../scans/*.ply"]' programs=PLOT/programs voxel=0.03 \\
             tile_points=2000000
   plot_workflow.py evaluate --folder PLOT
+  plot_workflow.py cut      --folder PLOT --points 3000000 --voxel 0.03
+
+The last command writes PLOT/part.ply, the points of a square in a corner of the plot.
 
 BIN, PLOT and PLOT/programs are absolute paths. Needs the standard library only.
 """
 
 import argparse
+import array
 import csv
+import itertools
 import json
 import math
 import os
@@ -119,6 +124,41 @@ def make(arguments):
     print(f"{len(trees)} trees, {total} points")
 
 
+def cut(arguments):
+    """Writes the points of a square in a corner, with one point per voxel if `voxel` is not 0."""
+    scans = os.path.join(arguments.folder, "scans")
+    kept, voxels = array.array("d"), set()
+    low = (X0 - SPACING / 2, Y0 - SPACING / 2)
+    counts = [0] * 100000  # of the points by the side of the square that reaches them, in cm
+    for name in sorted(os.listdir(scans)):
+        rows = rows_of_ply(os.path.join(scans, name))
+        next(rows)  # names
+        for row in rows:
+            x, y, z = row[:3]
+            if x < low[0] or y < low[1]:
+                continue
+            if arguments.voxel:
+                v = arguments.voxel
+                key = (math.floor(x / v), math.floor(y / v), math.floor(z / v))
+                if key in voxels:
+                    continue
+                voxels.add(key)
+            kept.extend((x, y, z))
+            counts[int(100 * max(x - low[0], y - low[1]))] += 1
+    side = next((k for k, n in enumerate(itertools.accumulate(counts)) if n >= arguments.points),
+                len(counts))
+    part = array.array("d")
+    for i in range(0, len(kept), 3):
+        if 100 * max(kept[i] - low[0], kept[i + 1] - low[1]) < side + 1:
+            part.extend(kept[i:i + 3])
+    with open(os.path.join(arguments.folder, "part.ply"), "wb") as file:
+        properties = "".join(f"property double {c}\n" for c in "xyz")
+        file.write(f"ply\nformat binary_little_endian 1.0\nelement vertex {len(part) // 3}\n"
+                   f"{properties}end_header\n".encode())
+        part.tofile(file)
+    print(f"{len(part) // 3} points, side {(side + 1) / 100} m")
+
+
 def wrap(arguments):
     """Writes programs that log their name, seconds, processor seconds and kilobytes."""
     folder = os.path.join(arguments.folder, "programs")
@@ -207,15 +247,17 @@ def main():
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("step", choices=("make", "wrap", "evaluate"))
+    parser.add_argument("step", choices=("make", "wrap", "evaluate", "cut"))
     parser.add_argument("--folder", required=True, help="folder of the plot")
     parser.add_argument("--programs", help="make, wrap: folder of the built programs")
     parser.add_argument("--side", type=int, default=8, help="make: trees along each side")
     parser.add_argument("--step-degrees", type=float, default=0.045, help="make: angle of beams")
+    parser.add_argument("--points", type=int, default=1000000, help="cut: least number of points")
+    parser.add_argument("--voxel", type=float, default=0, help="cut: voxel size of thinning; 0: none")
     arguments = parser.parse_args()
-    if arguments.step != "evaluate" and not arguments.programs:
+    if arguments.step in ("make", "wrap") and not arguments.programs:
         sys.exit("plot_workflow.py: --programs is required")
-    {"make": make, "wrap": wrap, "evaluate": evaluate}[arguments.step](arguments)
+    {"make": make, "wrap": wrap, "evaluate": evaluate, "cut": cut}[arguments.step](arguments)
 
 
 if __name__ == "__main__":

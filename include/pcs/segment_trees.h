@@ -230,8 +230,10 @@ void write_trees(const skeleton::Stand& stand,
   \throws Invalid_input if there are too few points, a coordinate is not finite or beyond 1e100, or
       a parameter is out of range
   \par Complexity
-  The time is \f$O(n \log n)\f$. The memory is 350 bytes per point that remains after thinning, and
-  about 70 bytes per other point.
+  The time is \f$O(n \log n)\f$. Besides `points`, the memory is at most about 240 bytes per point
+  that remains after thinning, and 8 bytes per other point, but at least 60 bytes per point. Noisy
+  scans with many short axes need up to 260 bytes. Positions are read three times through
+  `point_map`, since they are not stored.
   \par Determinism
   Results are identical for every number of threads and for the sequential tag.
 */

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Counts the allocations of a test executable with support/allocations.cpp and their bytes, and lets
-// one of them fail. Memory of malloc() is not counted.
+// Counts the allocations of a test executable with support/allocations.cpp and their bytes, and
+// lets one of them fail. Memory of malloc() is not counted.
 
 #ifndef PCS_TEST_SUPPORT_ALLOCATIONS_H
 #define PCS_TEST_SUPPORT_ALLOCATIONS_H
