@@ -265,7 +265,7 @@ bool choose_method(Session_state<Tag>& s, pcs::internal::Progress& progress)
   }
   set_method(s, Skeleton_method::level_sets);
   s.report.blade_fraction = share;
-  Links links = used_links(s);
+  Compact_links links = used_links(s);
   Linked_parts linked;
   link_used(s, links, Known_root::foot_on_ground, linked);
   trace_layers(s, links, linked);
