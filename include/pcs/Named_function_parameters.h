@@ -88,6 +88,7 @@
   PCS_OWN(do_limit_radii)                                                                          \
   PCS_OWN(branch_emergence)                                                                        \
   PCS_OWN(point_path)                                                                              \
+  PCS_OWN(do_keep_absent_branches)                                                                 \
   /* Orl_shape_space: statistics of several trees */                                               \
   PCS_OWN(metric)                                                                                  \
   PCS_OWN(tree_mean)                                                                               \

@@ -439,19 +439,38 @@ public:
   //!@{
 
   /*!
-    \brief writes a tree of the space as a skeleton; branches of length 0 are left out.
+    \brief writes a tree of the space as a skeleton.
 
-    Every branch begins with a separate node on the axis of its parent.
+    A branch that the tree lacks (its length is 0) is left out with its subtree. Parts of a branch
+    without length have no nodes of their own. Lengths up to 1e-9 of the extent of the tree count as
+    0; nodes so close are also joined when a tree is read. Every branch begins with a separate node
+    on the axis of its parent, which has the base radius of the branch; no other two consecutive
+    nodes are in one place.
+
     \param result receives the skeleton; its contents are replaced
+    \npbegin
+      \np{do_keep_absent_branches} whether branches and parts of branches without length are written
+          as well, as nodes in one place, which may have the radius 0
+        \nptype `bool`
+        \npdefault `false`
+    \npend
+    \throws pcs::Invalid_input when `t` is not a tree of this space
+    \par Complexity
+    O(n log n) for n nodes of all trees of the space.
   */
-  template <class OutKernel>
-  void skeleton(const Orl_tree& t, Tree_skeleton<OutKernel>& result) const
+  template <class OutKernel, class NamedParameters = parameters::Default_named_parameters>
+  void skeleton(const Orl_tree& t,
+                Tree_skeleton<OutKernel>& result,
+                const NamedParameters& np = NamedParameters()) const
   {
+    const bool do_keep = shape_space::read_do_keep_absent_branches(np);
     check_tree(t, "pcs::Orl_shape_space::skeleton()");
+    const shape_space::Orl_geometry& geometry = t.state().geometry;
     shape_space::write_skeleton(family().layout,
                                 t.coordinates(),
-                                t.state().geometry,
+                                geometry,
                                 family().origin,
+                                do_keep ? -1 : shape_space::internal::least_length(geometry),
                                 result);
   }
 

@@ -146,6 +146,66 @@ BOOST_AUTO_TEST_CASE(modes_and_new_trees_are_written)
   BOOST_TEST(content("out/sample_0001.swc") != content("other/sample_0001.swc"));
 }
 
+BOOST_AUTO_TEST_CASE(absent_branches_are_written_on_request_only)
+{
+  using namespace orl_test;
+  const std::vector<Branch> branches = random_branches(72, 5, 3);
+  std::string family;
+  for (std::size_t k = 0; k < 4; ++k) {
+    std::vector<char> is_kept(branches.size(), 1);
+    for (std::size_t b = 1; b < branches.size(); ++b)
+      is_kept[b] = b % 4 == k ? 0 : 1;
+    std::vector<std::size_t> tip;
+    const orl_test::Tree tree =
+        make_tree(branches, Turns(branches.size(), Eigen::Matrix3d::Identity()), is_kept, tip);
+    const std::string name = "pruned" + std::to_string(k) + ".swc";
+    pcs::IO::write_swc(path(name), tree);
+    family += "--skeleton " + name + ' ';
+  }
+  const std::string arguments = family +
+                                "--modes 3 --mode-inner-product metric --sample 3 --mean " +
+                                "--growth --frames 5 --lambda=-0.5,0.5,1.5 --output ";
+  succeeds(arguments + "clean");
+  succeeds(arguments + "whole --mesh --keep-absent-branches");
+  std::size_t number_in_one_place = 0, number_without_radius = 0;
+  for (const std::string name : {"mode_1_minus",
+                                 "mode_1_plus",
+                                 "mode_2_minus",
+                                 "mode_2_plus",
+                                 "mode_3_minus",
+                                 "mode_3_plus",
+                                 "sample_0000",
+                                 "sample_0002",
+                                 "mean",
+                                 "growth_0001",
+                                 "growth_0004",
+                                 "lambda_-0.500",
+                                 "lambda_0.500",
+                                 "lambda_1.500"})
+    for (const std::string folder : {"clean", "whole"}) {
+      orl_test::Tree tree;
+      pcs::IO::read_swc<orl_test::Kernel>(path(folder + '/' + name + ".swc"), tree);
+      std::size_t joined = 0, thin = 0;
+      for (const auto v : boost::make_iterator_range(vertices(tree)))
+        thin += tree[v].radius > 0 ? 0 : 1;
+      for (const auto e : boost::make_iterator_range(edges(tree)))
+        joined += tree[source(e, tree)].branch == tree[target(e, tree)].branch &&
+                          tree[source(e, tree)].point == tree[target(e, tree)].point
+                      ? 1
+                      : 0;
+      if (folder == "whole") {
+        number_in_one_place += joined;
+        number_without_radius += thin;
+        BOOST_TEST(exists("whole/" + name + "_surface.ply"));
+        continue;
+      }
+      BOOST_TEST(joined == 0u, name << ": " << joined << " nodes in the place of another");
+      BOOST_TEST(thin == 0u, name << ": " << thin << " nodes without radius");
+    }
+  BOOST_TEST(number_in_one_place > 0u);
+  BOOST_TEST(number_without_radius > 0u);
+}
+
 BOOST_AUTO_TEST_CASE(growth_and_changes_are_written)
 {
   succeeds(skeletons + "--growth --times 0,2,3 --frames 4 --monotone --output out");

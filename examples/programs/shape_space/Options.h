@@ -40,7 +40,7 @@ struct Options
        do_join_births = false, is_published = false, is_quiet = false;
 
   // families
-  bool do_mean = false, do_growth = false, do_mesh = false;
+  bool do_mean = false, do_growth = false, do_mesh = false, do_keep_absent_branches = false;
   bool is_monotone = false, may_leave_range = false;
   std::string mean_kind = "median", mode_inner_product = "branches", load, save, changes, distances;
   std::size_t number_of_modes = 0, number_of_samples = 0, number_of_frames = 11;
@@ -236,6 +236,9 @@ Exit codes: 0 success, 1 bad input or usage, 2 internal error.)");
   app.add_flag("--limit-radii",
                o.do_limit_radii,
                "no branch is thicker than its parent at its base");
+  app.add_flag("--keep-absent-branches",
+               o.do_keep_absent_branches,
+               "skeletons also contain the branches that a tree lacks, as nodes in one place");
   app.add_flag("--published-energy",
                o.is_published,
                "match branches with the energy as published [Aiteanu 2022]");

@@ -96,7 +96,7 @@ inline void write_tree(const Space& space,
 {
   const std::string stem = (std::filesystem::path(o.output) / name).string();
   Skeleton skeleton;
-  space.skeleton(tree, skeleton);
+  space.skeleton(tree, skeleton, np::do_keep_absent_branches(o.do_keep_absent_branches));
   pcs::IO::write_swc(stem + ".swc", skeleton);
   if (space.has_points())
     write_scan(space, tree, files, stem + ".ply");

@@ -236,6 +236,18 @@ Change_limits read_change_limits(const NamedParameters& np, const std::string& c
   return limits;
 }
 
+template <class NamedParameters>
+bool read_do_keep_absent_branches(const NamedParameters& np)
+{
+  using Tag = pcs::internal_np::do_keep_absent_branches_t;
+  pcs::internal::check_names<Tag>(np);
+  bool do_keep = false;
+  static_assert(pcs::internal::is_parameter_v<bool, NamedParameters, Tag>,
+                "pcs: named parameter `do_keep_absent_branches` must be a bool");
+  pcs::internal::read_parameter(np, Tag(), do_keep);
+  return do_keep;
+}
+
 struct Mean_options
 {
   Tree_mean kind = Tree_mean::median;

@@ -50,22 +50,40 @@ attachments_of_children(const Orl_layout& layout,
   return attachments;
 }
 
+/// Returns the largest distance of two nodes that are in one place, as for trees that are read. [L]
+inline double least_length(const Orl_geometry& geometry)
+{
+  Vec3 low = geometry.node[0], high = low;
+  for (const Vec3& p : geometry.node) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  return shortest_edge * (high - low).norm();
+}
+
 } // namespace internal
 
-/// Writes a tree of the space as a skeleton. An edge that supports a branch is divided there.
-/// Branches without length and their subtrees are left out.
+/*!
+  Writes a tree of the space as a skeleton. An edge that supports a branch is divided there.
+
+  A branch that is not longer than `least_length`, and its subtree, are left out: the tree lacks
+  them. A node that is not farther than `least_length` from the previous node of its branch is
+  joined with it. Only the first node of a branch, which has its base radius, is in the place of a
+  node of the parent. With a negative `least_length`, all branches and nodes are written. [L]
+*/
 template <class Kernel>
 void write_skeleton(const Orl_layout& layout,
                     const Orl_coordinates& x,
                     const Orl_geometry& geometry,
                     const Vec3& origin,
+                    double least_length,
                     Tree_skeleton<Kernel>& result)
 {
   using FT = typename Kernel::FT;
   Tree_skeleton<Kernel> tree;
   Tree_bundle& bundle = tree[boost::graph_bundle];
   std::vector<std::size_t> branch_of(layout.branches.size(), npos);
-  const std::vector<std::size_t> order = orders_of_branches(layout, x);
+  const std::vector<std::size_t> order = orders_of_branches(layout, x, least_length);
   std::vector<double> attachment;
   const std::vector<std::vector<double>> attachments =
       internal::attachments_of_children(layout, x, order, attachment);
@@ -79,12 +97,18 @@ void write_skeleton(const Orl_layout& layout,
     bundle.branches.push_back(
         {is_trunk ? npos : branch_of[branch.parent], static_cast<int>(order[b]), b});
     std::size_t previous = npos;
+    Vec3 place = Vec3::Zero(); // of the previous node
+    bool is_first = true;
     if (!is_trunk) {
       const auto& of_parent = attachments[branch.parent];
       const auto k = std::lower_bound(of_parent.begin(), of_parent.end(), attachment[b]);
       previous = vertex_at[branch.parent][static_cast<std::size_t>(k - of_parent.begin())];
     }
     const auto add = [&](const Vec3& local, double radius) {
+      if (!is_first && (local - place).norm() <= least_length)
+        return;
+      is_first = false;
+      place = local;
       const Vec3 p = local + origin;
       Tree_node<Kernel> node;
       node.point = typename Kernel::Point_3(static_cast<FT>(p.x()),

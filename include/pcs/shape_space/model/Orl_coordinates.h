@@ -148,10 +148,10 @@ inline void build_geometry(const Orl_layout& layout,
   }
 }
 
-/// Returns the orders of the branches of a tree, 0 for the trunk, and `none` for branches without
-/// length and their subtrees.
-inline std::vector<std::size_t> orders_of_branches(const Orl_layout& layout,
-                                                   const Orl_coordinates& x)
+/// Returns the orders of the branches of a tree, 0 for the trunk, and `none` for branches that are
+/// not longer than `least_length` [L], and their subtrees.
+inline std::vector<std::size_t>
+orders_of_branches(const Orl_layout& layout, const Orl_coordinates& x, double least_length = 0)
 {
   std::vector<std::size_t> order(layout.branches.size(), none);
   for (std::size_t b = 0; b < order.size(); ++b) {
@@ -161,7 +161,7 @@ inline std::vector<std::size_t> orders_of_branches(const Orl_layout& layout,
       length += x.length[branch.first_edge + j];
     if (branch.parent == none)
       order[b] = 0;
-    else if (length > 0 && order[branch.parent] != none)
+    else if (length > least_length && order[branch.parent] != none)
       order[b] = order[branch.parent] + 1;
   }
   return order;
