@@ -79,7 +79,37 @@ struct Growth
   double noise;   ///< standard deviation of attachments
   double stretch; ///< standard deviation of the logarithm of lengths
   double pruned;  ///< probability that a branch and its descendants are cut
+  double prune;   ///< share of the branches of each order that is cut with its descendants
+  double scale;   ///< largest relative change of lengths, all as likely
 };
+
+/// Cuts this share of the branches of each order that are left, with their descendants.
+template <class Random>
+void prune(std::vector<Branch>& branches, double share, Random& random)
+{
+  std::vector<std::size_t> order(branches.size(), 0);
+  std::vector<std::vector<std::size_t>> of_order;
+  for (std::size_t b = 1; b < branches.size(); ++b) {
+    order[b] = order[branches[b].parent] + 1;
+    of_order.resize(std::max(of_order.size(), order[b]));
+    of_order[order[b] - 1].push_back(b);
+  }
+  for (const std::vector<std::size_t>& all : of_order) {
+    std::vector<std::size_t> left;
+    for (const std::size_t b : all)
+      if (branches[branches[b].parent].is_kept && branches[b].is_kept)
+        left.push_back(b);
+      else
+        branches[b].is_kept = false;
+    const auto cut = static_cast<std::size_t>(share * static_cast<double>(left.size()) + 0.5);
+    for (std::size_t k = 0; k < cut; ++k) {
+      // a uniform choice, the same with every standard library
+      const std::size_t other = k + static_cast<std::size_t>(random() % (left.size() - k));
+      std::swap(left[k], left[other]);
+      branches[left[k]].is_kept = false;
+    }
+  }
+}
 
 inline std::vector<Branch> grow(std::vector<Branch> branches, const Growth& growth, unsigned seed)
 {
@@ -96,6 +126,11 @@ inline std::vector<Branch> grow(std::vector<Branch> branches, const Growth& grow
         std::min(1.0, std::max(0.0, branch.attachment + growth.noise * normal(random)));
     branch.is_kept = branches[branch.parent].is_kept && uniform(random) >= growth.pruned;
   }
+  if (growth.scale > 0)
+    for (std::size_t b = 1; b < branches.size(); ++b)
+      branches[b].scale *= 1 + growth.scale * (2 * uniform(random) - 1);
+  if (growth.prune > 0)
+    prune(branches, growth.prune, random);
   return branches;
 }
 
