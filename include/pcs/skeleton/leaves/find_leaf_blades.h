@@ -50,9 +50,10 @@ struct Blade_options
   double curved = 0.35;  ///< largest curvature, in inverse radii of the sheet [-]
   double touching = 2.2; ///< largest distance of connected means, in sides of a cell [-]
   double large = 0.12;   ///< least size of a blade, in sizes of the plant [-]
-  //! means that are tested first, at most [count]; the others are tested if there are sheets ...
+  //! means that are tested first, at most [count]; the others are tested if ...
   std::size_t sample = 2000;
-  double share = 0.02; ///< ... at this fraction of the means, the least fraction on blades [-]
+  double sheets = 0.05; ///< ... at least this fraction of them lies on sheets [-]
+  double share = 0.02;  ///< least fraction of the means that lie on blades [-]
 };
 
 /// The points of a plant that lie on leaf blades.
@@ -99,7 +100,7 @@ public:
     const auto share_of = [](const std::vector<std::uint8_t>& flags) {
       return double(std::count(flags.begin(), flags.end(), 1)) / double(flags.size());
     };
-    if (share_of(find_sheets<ConcurrencyTag>(neighbors, step)) < m_rules.share)
+    if (share_of(find_sheets<ConcurrencyTag>(neighbors, step)) < m_rules.sheets)
       return blades;
     const std::vector<std::uint8_t> is_blade =
         find_blades(neighbors, find_sheets<ConcurrencyTag>(neighbors, 1));
