@@ -182,9 +182,9 @@ BOOST_AUTO_TEST_CASE(absent_branches_are_written_on_request_only)
                                  "lambda_-0.500",
                                  "lambda_0.500",
                                  "lambda_1.500"})
-    for (const std::string folder : {"clean", "whole"}) {
+    for (const std::string result : {"clean", "whole"}) {
       orl_test::Tree tree;
-      pcs::IO::read_swc<orl_test::Kernel>(path(folder + '/' + name + ".swc"), tree);
+      pcs::IO::read_swc<orl_test::Kernel>(path(result + '/' + name + ".swc"), tree);
       std::size_t joined = 0, thin = 0;
       for (const auto v : boost::make_iterator_range(vertices(tree)))
         thin += tree[v].radius > 0 ? 0 : 1;
@@ -193,7 +193,7 @@ BOOST_AUTO_TEST_CASE(absent_branches_are_written_on_request_only)
                           tree[source(e, tree)].point == tree[target(e, tree)].point
                       ? 1
                       : 0;
-      if (folder == "whole") {
+      if (result == "whole") {
         number_in_one_place += joined;
         number_without_radius += thin;
         BOOST_TEST(exists("whole/" + name + "_surface.ply"));

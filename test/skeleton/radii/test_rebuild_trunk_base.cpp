@@ -186,6 +186,27 @@ BOOST_AUTO_TEST_CASE(the_root_is_of_the_trunk_and_not_of_a_piece_beside_it)
   BOOST_CHECK_EQUAL(root_axis(scan, set, root, std::nullopt), 1u);
 }
 
+// Fits of a shaded lower stem are kept if the trunk bends above it.
+BOOST_AUTO_TEST_CASE(a_bent_trunk_with_few_points_below_keeps_its_base)
+{
+  constexpr double radius = 0.056, bend = 1;
+  const auto count = [](double length, double density) {
+    return static_cast<std::size_t>(2 * pi * radius * length * density);
+  };
+  Cloud cloud = cylinder(count(bend, 700), radius, bend);
+  append(cloud, cylinder(count(5, 4000), radius, 5, Point(0, 0, bend), Vector(-0.15, 0.05, 1)));
+  Tree tree;
+  pcs::extract_tree_skeleton(Jitter(0.002)(cloud), tree);
+  check_is_a_tree(tree);
+  int number_below = 0;
+  for (std::size_t v = 0; v < num_vertices(tree); ++v)
+    if (tree[v].branch == 0 && tree[v].point.z() < 0.9 * bend) {
+      ++number_below;
+      BOOST_TEST(std::hypot(tree[v].point.x(), tree[v].point.y()) < 0.3 * radius);
+    }
+  BOOST_TEST(number_below > 5);
+}
+
 BOOST_AUTO_TEST_CASE(buttresses_do_not_hide_the_trunk)
 {
   const Buttressed_trunk shape;

@@ -33,6 +33,7 @@ struct Trunk_base_options
   double slab = 0.25;    ///< half thickness of a section, in radii ...
   double slab_spacings = 2; ///< ... and in spacings, whichever is larger [-]
   int sectors = 8;          ///< least number of sectors, of 24, with points [count]
+  double outlined = 0.5; ///< least number of outlines with points, relative to fitted sections [-]
 };
 
 namespace internal {
@@ -113,8 +114,9 @@ inline std::size_t first_sound_node(const Branch_tree& tree,
 /*!
   Rebuilds the trunk below the lowest part with supported round cross-sections, since fits farther
   below follow single buttresses. The axis is extended straight downwards. The radii are those of
-  circles with the area of the outline around the axis. z points upwards. Returns the number of
-  moved nodes. O(points + nodes).
+  circles with the area of the outline around the axis. If there are points around too few of the
+  extended sections, the base is bent, and the fits are kept. z points upwards. Returns the number
+  of moved nodes. O(points + nodes).
 */
 inline std::size_t rebuild_trunk_base(const Scan& scan,
                                       const std::vector<std::uint8_t>& is_used,
@@ -153,8 +155,11 @@ inline std::size_t rebuild_trunk_base(const Scan& scan,
     if (is_used[i] && t < half && (d - t * along).squaredNorm() < reach * reach)
       near.push_back(i);
   }
+  std::vector<Branch_node> foot_nodes;
+  std::size_t fitted = 0, outlined = 0; // sections with evidence
   for (std::size_t k = 0; k < sound; ++k) {
-    Branch_node& node = tree.nodes[nodes[k]];
+    Branch_node node = tree.nodes[nodes[k]];
+    fitted += node.is_measured;
     const double below = std::min(0.0, node.point.z() - first.point.z()) / along.z();
     internal::Outline outline;
     for (const Index i : near) {
@@ -166,7 +171,13 @@ inline std::size_t rebuild_trunk_base(const Scan& scan,
     node.is_measured = outline.number_of_seen_sectors() >= rules.sectors;
     node.radius = node.is_measured ? outline.radius() : first.radius;
     node.radius_error = node.is_measured ? proof.proof_error * node.radius : node.radius;
+    outlined += node.is_measured;
+    foot_nodes.push_back(node);
   }
+  if (double(outlined) < rules.outlined * double(fitted)) // the trunk is bent, not buttressed
+    return 0;
+  for (std::size_t k = 0; k < sound; ++k)
+    tree.nodes[nodes[k]] = foot_nodes[k];
   for (Branch& branch : tree.branches) { // child branches move with the axis
     Branch_node& base = tree.nodes[branch.nodes.front()];
     if (base.parent != none && tree.nodes[base.parent].branch == 0)
