@@ -247,8 +247,25 @@ void find_blades(Session_state<Tag>& s)
     set_method(s, Skeleton_method::chains);
 }
 
+/// Keeps the blades of the largest connected part, which is the plant. Other parts may be objects
+/// beside it.
+template <class Tag>
+void keep_connected_blades(Session_state<Tag>& s)
+{
+  const Point_parts parts = connected_parts<Tag>(s.is_used(), used_links(s));
+  const auto largest = std::max_element(parts.size.begin(), parts.size.end());
+  const auto plant = static_cast<Index>(largest - parts.size.begin());
+  std::vector<Index>& points = s.blades.points;
+  const double count = double(points.size());
+  points.erase(
+      std::remove_if(points.begin(), points.end(), [&](Index i) { return parts.part[i] != plant; }),
+      points.end());
+  s.blades.share *= double(points.size()) / count;
+}
+
 /// Chooses the method of a plant with sheets: `level_sets`, unless thick axes explain the sheets,
-/// like the bark of a log. Returns `false` if `progress` stopped it.
+/// like the bark of a log, or most of them are not connected with the plant. Returns `false` if
+/// `progress` stopped it.
 template <class Tag>
 bool choose_method(Session_state<Tag>& s, pcs::internal::Progress& progress)
 {
@@ -258,6 +275,7 @@ bool choose_method(Session_state<Tag>& s, pcs::internal::Progress& progress)
   });
   if (!is_running)
     return false;
+  keep_connected_blades(s);
   const double share = share_without_axes(s.scan, axes, s.blades, s.options.blades);
   if (share < s.options.blades.share) {
     set_method(s, Skeleton_method::chains);

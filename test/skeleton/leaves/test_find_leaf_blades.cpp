@@ -129,6 +129,22 @@ BOOST_AUTO_TEST_CASE(the_bark_of_a_log_is_no_blade)
   BOOST_TEST(report.diameter_at_breast_height < 0.42);
 }
 
+BOOST_AUTO_TEST_CASE(a_vaulted_object_beside_a_tree_is_no_blade)
+{
+  std::vector<Blade_point> points = pcs_test::small_scan().scan.points;
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  std::normal_distribution<double> noise(0, 0.002);
+  for (int i = 0; i < 6000; ++i) { // a part of a sphere, like the hood of a car
+    const double x = 0.6 * uniform(random), y = 0.6 * uniform(random);
+    const double z = std::sqrt(1.5 * 1.5 - x * x - y * y) - 1 + noise(random);
+    points.emplace_back(2.5 + x, y, z);
+  }
+  const auto report = report_of(points);
+  BOOST_TEST((report.method == pcs::Skeleton_method::chains));
+  BOOST_TEST(report.blade_fraction == 0);
+}
+
 BOOST_AUTO_TEST_CASE(rounded_points_are_no_blades)
 {
   std::vector<Blade_point> points = plant(3);

@@ -53,7 +53,7 @@ struct Blade_options
   //! means that are tested first, at most [count]; the others are tested if ...
   std::size_t sample = 2000;
   double sheets = 0.05; ///< ... at least this fraction of them lies on sheets [-]
-  double share = 0.02;  ///< least fraction of the means that lie on blades [-]
+  double share = 0.01;  ///< least fraction of the means that lie on blades [-]
 };
 
 /// The points of a plant that lie on leaf blades.
