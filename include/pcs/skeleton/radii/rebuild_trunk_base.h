@@ -7,6 +7,7 @@
 
 #include <pcs/internal/constants.h>
 #include <pcs/internal/median.h>
+#include <pcs/skeleton/model/Axis.h>
 #include <pcs/skeleton/model/Branch_tree.h>
 #include <pcs/skeleton/model/Scan.h>
 #include <pcs/skeleton/radii/bound_radii.h>
@@ -33,7 +34,8 @@ struct Trunk_base_options
   double slab = 0.25;    ///< half thickness of a section, in radii ...
   double slab_spacings = 2; ///< ... and in spacings, whichever is larger [-]
   int sectors = 8;          ///< least number of sectors, of 24, with points [count]
-  double outlined = 0.5; ///< least number of outlines with points, relative to fitted sections [-]
+  double explained =
+      0.7; ///< fraction of the points of the foot on fitted sections, above which these are kept [-]
 };
 
 namespace internal {
@@ -109,13 +111,35 @@ inline std::size_t first_sound_node(const Branch_tree& tree,
   return nodes.size();
 }
 
+/// Returns the fraction of `points` on the sections fitted to the trunk below node `end` [-].
+inline double explained_share(const Scan& scan,
+                              const std::vector<Index>& points,
+                              const Branch_tree& tree,
+                              std::size_t end)
+{
+  constexpr double tolerance = 0.15; // in radii [-]
+  const std::vector<Index>& nodes = tree.branches[0].nodes;
+  Axis axis;
+  for (std::size_t k = 0; k <= end; ++k) {
+    const Branch_node& node = tree.nodes[nodes[k]];
+    axis.push_back({node.point, node.radius, node.radius_error, node.is_measured});
+  }
+  std::size_t count = 0;
+  for (const Index i : points) {
+    const Axis_place place = nearest_place(axis, scan.points[i]);
+    const double radius = radius_at(axis, place);
+    count += std::abs(place.distance - radius) <= tolerance * radius;
+  }
+  return points.empty() ? 0 : double(count) / double(points.size());
+}
+
 } // namespace internal
 
 /*!
   Rebuilds the trunk below the lowest part with supported round cross-sections, since fits farther
   below follow single buttresses. The axis is extended straight downwards. The radii are those of
-  circles with the area of the outline around the axis. If there are points around too few of the
-  extended sections, the base is bent, and the fits are kept. z points upwards. Returns the number
+  circles with the area of the outline around the axis. If most points of the foot lie on the
+  fitted sections, these are kept, since the trunk is bent but round. z points upwards. Returns the number
   of moved nodes. O(points + nodes).
 */
 inline std::size_t rebuild_trunk_base(const Scan& scan,
@@ -155,11 +179,10 @@ inline std::size_t rebuild_trunk_base(const Scan& scan,
     if (is_used[i] && t < half && (d - t * along).squaredNorm() < reach * reach)
       near.push_back(i);
   }
-  std::vector<Branch_node> foot_nodes;
-  std::size_t fitted = 0, outlined = 0; // sections with evidence
+  if (internal::explained_share(scan, near, tree, sound) >= rules.explained)
+    return 0; // a round trunk that bends
   for (std::size_t k = 0; k < sound; ++k) {
-    Branch_node node = tree.nodes[nodes[k]];
-    fitted += node.is_measured;
+    Branch_node& node = tree.nodes[nodes[k]];
     const double below = std::min(0.0, node.point.z() - first.point.z()) / along.z();
     internal::Outline outline;
     for (const Index i : near) {
@@ -171,13 +194,7 @@ inline std::size_t rebuild_trunk_base(const Scan& scan,
     node.is_measured = outline.number_of_seen_sectors() >= rules.sectors;
     node.radius = node.is_measured ? outline.radius() : first.radius;
     node.radius_error = node.is_measured ? proof.proof_error * node.radius : node.radius;
-    outlined += node.is_measured;
-    foot_nodes.push_back(node);
   }
-  if (double(outlined) < rules.outlined * double(fitted)) // the trunk is bent, not buttressed
-    return 0;
-  for (std::size_t k = 0; k < sound; ++k)
-    tree.nodes[nodes[k]] = foot_nodes[k];
   for (Branch& branch : tree.branches) { // child branches move with the axis
     Branch_node& base = tree.nodes[branch.nodes.front()];
     if (base.parent != none && tree.nodes[base.parent].branch == 0)
