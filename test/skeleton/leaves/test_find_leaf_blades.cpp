@@ -145,14 +145,15 @@ BOOST_AUTO_TEST_CASE(a_vaulted_object_beside_a_tree_is_no_blade)
   BOOST_TEST(report.blade_fraction == 0);
 }
 
-BOOST_AUTO_TEST_CASE(rounded_points_are_no_blades)
+// Points that are rounded more coarsely than the cells lie in planes.
+BOOST_AUTO_TEST_CASE(no_blades_are_searched_among_rounded_points)
 {
   std::vector<Blade_point> points = plant(3);
   for (Blade_point& p : points)
-    p = Blade_point(0.05 * std::round(p.x() / 0.05),
-                    0.05 * std::round(p.y() / 0.05),
-                    0.05 * std::round(p.z() / 0.05));
-  BOOST_TEST((report_of(points).method == pcs::Skeleton_method::chains));
+    p = Blade_point(p.x(), p.y(), 0.006 * std::round(p.z() / 0.006));
+  const auto report = report_of(points);
+  BOOST_TEST(std::abs(report.coordinate_step - 0.006) < 1e-6);
+  BOOST_TEST((report.method == pcs::Skeleton_method::chains));
 }
 
 BOOST_AUTO_TEST_CASE(options_for_wood_exclude_blades)
