@@ -34,8 +34,8 @@ struct Trunk_base_options
   double slab = 0.25;    ///< half thickness of a section, in radii ...
   double slab_spacings = 2; ///< ... and in spacings, whichever is larger [-]
   int sectors = 8;          ///< least number of sectors, of 24, with points [count]
-  double explained =
-      0.7; ///< fraction of the points of the foot on fitted sections, above which these are kept [-]
+  //! fraction of the points of the foot on fitted sections, above which these are kept [-]
+  double explained = 0.7;
 };
 
 namespace internal {
@@ -139,8 +139,8 @@ inline double explained_share(const Scan& scan,
   Rebuilds the trunk below the lowest part with supported round cross-sections, since fits farther
   below follow single buttresses. The axis is extended straight downwards. The radii are those of
   circles with the area of the outline around the axis. If most points of the foot lie on the
-  fitted sections, these are kept, since the trunk is bent but round. z points upwards. Returns the number
-  of moved nodes. O(points + nodes).
+  fitted sections, these are kept, since the trunk is bent but round. z points upwards. Returns the
+  number of moved nodes. O(points + nodes).
 */
 inline std::size_t rebuild_trunk_base(const Scan& scan,
                                       const std::vector<std::uint8_t>& is_used,
