@@ -276,8 +276,10 @@ bool choose_method(Session_state<Tag>& s, pcs::internal::Progress& progress)
   if (!is_running)
     return false;
   keep_connected_blades(s);
-  const double share = share_without_axes(s.scan, axes, s.blades, s.options.blades);
-  if (share < s.options.blades.share) {
+  const Blade_options& rules = s.options.blades;
+  const double bark = share_of_bark(s.scan, axes, s.blades, rules);
+  const double share = (1 - bark) * s.blades.share;
+  if (bark > rules.bark || share < rules.share) {
     set_method(s, Skeleton_method::chains);
     return true;
   }

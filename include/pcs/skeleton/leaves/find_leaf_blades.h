@@ -54,6 +54,7 @@ struct Blade_options
   std::size_t sample = 2000;
   double sheets = 0.05; ///< ... at least this fraction of them lies on sheets [-]
   double share = 0.01;  ///< least fraction of the means that lie on blades [-]
+  double bark = 0.75;   ///< largest fraction of bark among the points on blades [-]
 };
 
 /// The points of a plant that lie on leaf blades.
@@ -228,12 +229,12 @@ Leaf_blades find_leaf_blades(const Scan& scan,
   return blades;
 }
 
-/// Returns the fraction of the occupied cells on blades without a thick axis behind them [-].
+/// Returns the fraction of the points on blades that have a thick axis behind them, like bark [-].
 /// O(points).
-inline double share_without_axes(const Scan& scan,
-                                 const Axis_set& axes,
-                                 const Leaf_blades& blades,
-                                 const Blade_options& rules = {})
+inline double share_of_bark(const Scan& scan,
+                            const Axis_set& axes,
+                            const Leaf_blades& blades,
+                            const Blade_options& rules = {})
 {
   const auto is_bark = [&](Index i) {
     if (!axes.is_covered(i))
@@ -244,10 +245,8 @@ inline double share_without_axes(const Scan& scan,
     return radius >= blades.radius &&
            std::abs(place.distance - radius) <= rules.rough * blades.radius;
   };
-  if (blades.points.empty())
-    return 0;
   const auto count = std::count_if(blades.points.begin(), blades.points.end(), is_bark);
-  return blades.share * (1 - double(count) / double(blades.points.size()));
+  return blades.points.empty() ? 0 : double(count) / double(blades.points.size());
 }
 
 } // namespace skeleton
