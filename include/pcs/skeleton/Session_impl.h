@@ -8,6 +8,7 @@
 #include <pcs/internal/Stage_timer.h>
 #include <pcs/internal/progress.h>
 #include <pcs/skeleton/Session.h>
+#include <pcs/skeleton/Session_method.h>
 #include <pcs/skeleton/Session_options.h>
 #include <pcs/skeleton/Session_stages.h>
 #include <pcs/skeleton/Session_state.h>
@@ -38,7 +39,8 @@ Session<ConcurrencyTag>::Session(std::vector<Vec3> input,
   m_state->report.number_of_points = input.size();
   m_state->input = std::move(input);
   m_state->is_wood = std::move(is_wood);
-  m_state->report.method = options.method;
+  if (options.method != Skeleton_method::automatic)
+    m_state->report.method = options.method;
   m_state->report.is_root_given = options.root.has_value();
   m_state->options = std::move(options);
 }

@@ -123,10 +123,13 @@ void start_labels(Session_state<Tag>& s)
   s.labels.start(s.is_wood);
 }
 
+/// Sets the method of all further stages. It is reported once it is known.
 template <class Tag>
 void set_method(Session_state<Tag>& s, Skeleton_method method)
 {
-  s.options.method = s.report.method = method;
+  s.options.method = method;
+  if (method != Skeleton_method::automatic)
+    s.report.method = method;
   if (method == Skeleton_method::level_sets)
     s.options.layers.thickness = blade_layer_thickness;
 }
@@ -230,65 +233,6 @@ bool remove_ground(Session_state<Tag>& s,
     return false;
   if (s.clutter.remove_ground_and_faces([&] { return used_links(s); }, links))
     link(Known_root::foot_on_ground);
-  return true;
-}
-
-// ---- method
-
-/// Finds leaf blades if they decide on the method; without them, it is `chains`.
-template <class Tag>
-void find_blades(Session_state<Tag>& s)
-{
-  if (s.options.method != Skeleton_method::automatic)
-    return;
-  s.blades = find_leaf_blades<Tag>(s.scan, s.is_used(), s.options.blades);
-  const bool is_rounded = s.report.coordinate_step > s.scan.frame.unit * s.blades.cell;
-  if (is_rounded || s.blades.share < s.options.blades.share) // rounded points lie in planes
-    set_method(s, Skeleton_method::chains);
-}
-
-/// Keeps the blades of the largest connected part, which is the plant. Other parts may be objects
-/// beside it.
-template <class Tag>
-void keep_connected_blades(Session_state<Tag>& s)
-{
-  const Point_parts parts = connected_parts<Tag>(s.is_used(), used_links(s));
-  const auto largest = std::max_element(parts.size.begin(), parts.size.end());
-  const auto plant = static_cast<Index>(largest - parts.size.begin());
-  std::vector<Index>& points = s.blades.points;
-  const double count = double(points.size());
-  points.erase(
-      std::remove_if(points.begin(), points.end(), [&](Index i) { return parts.part[i] != plant; }),
-      points.end());
-  s.blades.share *= double(points.size()) / count;
-}
-
-/// Chooses the method of a plant with sheets: `level_sets`, unless thick axes explain the sheets,
-/// like the bark of a log, or most of them are not connected with the plant. Returns `false` if
-/// `progress` stopped it.
-template <class Tag>
-bool choose_method(Session_state<Tag>& s, pcs::internal::Progress& progress)
-{
-  bool is_running = true;
-  const Axis_set axes = skeleton::fit_axes<Tag>(s.scan, s.layers, s.options.axes, [&](double) {
-    return is_running = progress(end_of_paths);
-  });
-  if (!is_running)
-    return false;
-  keep_connected_blades(s);
-  const Blade_options& rules = s.options.blades;
-  const double bark = share_of_bark(s.scan, axes, s.blades, rules);
-  const double share = (1 - bark) * s.blades.share;
-  if (bark > rules.bark || share < rules.share) {
-    set_method(s, Skeleton_method::chains);
-    return true;
-  }
-  set_method(s, Skeleton_method::level_sets);
-  s.report.blade_fraction = share;
-  Compact_links links = used_links(s);
-  Linked_parts linked;
-  link_used(s, links, Known_root::foot_on_ground, linked);
-  trace_layers(s, links, linked);
   return true;
 }
 

@@ -192,6 +192,7 @@ BOOST_AUTO_TEST_CASE(an_extraction_can_be_cancelled_while_the_method_is_chosen)
     Tree tree;
     const auto report = pcs::extract_tree_skeleton(points, tree, np::callback(callback));
     BOOST_TEST((report.status == pcs::Status::cancelled || calls < last), "call " << last);
+    BOOST_TEST((report.method != pcs::Skeleton_method::automatic), "call " << last);
   }
 }
 
