@@ -33,7 +33,8 @@ PRESETS = ("broadleaf", "conifer", "fruit", "forked")
 SPACING, SLOPE, X0, Y0, Z0 = 6.5, 0.2, 500000, 5400000, 300
 SCAN = (("x", "d"), ("y", "d"), ("z", "d"), ("node", "i"), ("station", "i"), ("truth", "i"))
 TYPES = {"double": "d", "float": "f", "int": "i", "uint": "I", "uchar": "B", "ushort": "H"}
-GROUND = -2
+GROUND, GHOST = -2, -1
+GHOSTS = 2  # height below which ghosts follow the ground, the more the lower they are [m]
 
 WRAPPER = """#!/usr/bin/env python3
 import resource, subprocess, sys, time
@@ -88,6 +89,13 @@ def true_tree(path, x, y):
     return {**position, "dbh": 2 * radius, "height": max(float(n["z"]) for n in nodes)}
 
 
+def shear(node, height):
+    """Returns how much of the slope a point follows. Ghosts lie between the ground and a tree."""
+    if node == GROUND:
+        return 1
+    return min(1, max(0, 1 - height / GHOSTS)) if node == GHOST else 0
+
+
 def make(arguments):
     """One tree at a time is scanned with the ground around it; trees do not hide each other."""
     scans, one = os.path.join(arguments.folder, "scans"), os.path.join(arguments.folder, "one")
@@ -110,7 +118,7 @@ def make(arguments):
             points = rows_of_ply(one + ".ply")
             next(points)
             for px, py, pz, node, station in points:  # the ground is sheared, the tree is upright
-                z = pz + foot + (SLOPE * px if node == GROUND else 0)
+                z = pz + foot + SLOPE * px * shear(node, pz)
                 truth = number if node >= 0 else node
                 packed.append(row.pack(px + x, py + y, z, node, station, truth))
             parts.append(b"".join(packed))
