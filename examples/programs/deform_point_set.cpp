@@ -175,8 +175,12 @@ int main(int argc, char** argv)
   CLI::App app("Deforms a point cloud by handles; the other points follow as rigidly as possible.",
                "deform_point_set");
   program::declare(app, options);
-  return program::run_program(app, argc, argv, [&] {
-    program::run(options);
-    return true;
-  });
+  return program::run_program(app,
+                              argc,
+                              argv,
+                              "--input cloud.ply --default-edit --output deformed.ply",
+                              [&] {
+                                program::run(options);
+                                return true;
+                              });
 }

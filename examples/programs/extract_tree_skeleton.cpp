@@ -397,11 +397,15 @@ int main(int argc, char** argv)
   CLI::App app("Finds the branches of a tree in a scan: their axes, radii and connection.",
                "extract_tree_skeleton");
   program::declare(app, options);
-  return program::run_program(app, argc, argv, [&] {
-    program::check(options);
-    if (!options.folder.empty())
-      return program::run_batch(options);
-    program::run_single(options);
-    return true;
-  });
+  return program::run_program(app,
+                              argc,
+                              argv,
+                              "--input tree.ply --swc tree.swc --mesh mesh.ply",
+                              [&] {
+                                program::check(options);
+                                if (!options.folder.empty())
+                                  return program::run_batch(options);
+                                program::run_single(options);
+                                return true;
+                              });
 }

@@ -331,8 +331,12 @@ int main(int argc, char** argv)
   CLI::App app("Deforms a point cloud onto another one without given correspondences.",
                "fit_point_set");
   program::declare(app, options);
-  return program::run_program(app, argc, argv, [&] {
-    program::run(options);
-    return true;
-  });
+  return program::run_program(app,
+                              argc,
+                              argv,
+                              "--source a.ply --target b.ply --output fitted.ply",
+                              [&] {
+                                program::run(options);
+                                return true;
+                              });
 }

@@ -510,5 +510,9 @@ int main(int argc, char** argv)
   program::Options options;
   CLI::App app("Merges the segmented tiles of a plot.", "merge_tiles");
   program::declare(app, options);
-  return program::run_program(app, argc, argv, [&] { return program::run(options); });
+  return program::run_program(app,
+                              argc,
+                              argv,
+                              "--tiles tiles/tiles.json --results results --table trees.csv",
+                              [&] { return program::run(options); });
 }

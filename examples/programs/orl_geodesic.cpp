@@ -330,8 +330,12 @@ int main(int argc, char** argv)
   orl_program::Options options;
   CLI::App app("Makes trees between scanned trees, beyond them, and like them.", "orl_geodesic");
   orl_program::declare(app, options);
-  return program::run_program(app, argc, argv, [&] {
-    orl_program::run(options);
-    return true;
-  });
+  return program::run_program(app,
+                              argc,
+                              argv,
+                              "--tree a.ply --tree b.ply --lambda 0,0.5,1 --output results",
+                              [&] {
+                                orl_program::run(options);
+                                return true;
+                              });
 }

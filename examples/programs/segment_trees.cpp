@@ -317,7 +317,7 @@ int main(int argc, char** argv)
   program::Options options;
   CLI::App app("Segments the scan of a stand into individual trees.", "segment_trees");
   program::declare(app, options);
-  return program::run_program(app, argc, argv, [&] {
+  return program::run_program(app, argc, argv, "--input stand.ply --folder trees", [&] {
     program::run(options);
     return true;
   });

@@ -444,5 +444,7 @@ int main(int argc, char** argv)
   program::Options options;
   CLI::App app("Cuts the scan of a plot of any size into tiles with buffers.", "tile_points");
   program::declare(app, options);
-  return program::run_program(app, argc, argv, [&] { return program::run(options); });
+  return program::run_program(app, argc, argv, "--input plot.laz --folder tiles", [&] {
+    return program::run(options);
+  });
 }

@@ -164,7 +164,7 @@ int main(int argc, char** argv)
   CLI::App app("Grows and scans a virtual tree; writes labelled points and the ground truth.",
                "virtual_scan");
   program::declare(app, options);
-  return program::run_program(app, argc, argv, [&] {
+  return program::run_program(app, argc, argv, "--output scan.ply --swc truth.swc", [&] {
     program::run(options);
     return true;
   });

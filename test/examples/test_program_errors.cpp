@@ -285,7 +285,8 @@ BOOST_FIXTURE_TEST_CASE(the_command_line_is_checked, Deform_run)
   const auto refuses_usage = [&](const std::string& args, const std::vector<std::string>& words) {
     refuses(*this, args, words, args);
   };
-  refuses_usage("", {"--input is required"});
+  refuses_usage("", {"Deforms a point cloud", "Example: deform_point_set --input", "--help"});
+  refuses_usage("--default-edit", {"--input is required"});
   refuses_usage("--input in.ply --default-edit", {"--output is required"});
   refuses_usage("--input in.ply --output out.ply", {"exactly one of --edit and --default-edit"});
   refuses_usage(arguments + " --default-edit", {"exactly one of --edit and --default-edit"});

@@ -21,15 +21,22 @@
 namespace program {
 
 /// Parses the options, then calls `work()`, which returns whether it succeeded, or an exit code.
+/// Without arguments, prints what the program does, and a call with the arguments `example`.
 /// Returns 0: success, 1: invalid input, 2: internal error, or the code of `work()`.
 template <class Work>
-int run_program(CLI::App& app, int argc, char** argv, const Work& work)
+int run_program(CLI::App& app, int argc, char** argv, const std::string& example, const Work& work)
 {
   constexpr int bad_input = 1, internal_error = 2;
   const auto fail = [&app](int exit_code, const std::string& what) {
     std::cerr << app.get_name() << ": " << what << '\n';
     return exit_code;
   };
+  if (argc <= 1) {
+    const std::string name = app.get_name();
+    std::cerr << app.get_description() << "\nExample: " << name << ' ' << example
+              << "\nAll options: " << name << " --help\n";
+    return bad_input;
+  }
 #ifdef SIGXFSZ
   std::signal(SIGXFSZ, SIG_IGN); // exceeding a limit of the file size is an error like a full disk
 #endif
