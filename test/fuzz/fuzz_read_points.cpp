@@ -1,8 +1,9 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Arbitrary bytes are a valid point file or an IO_error. A valid file is unchanged by writing and
-// reading.
+// Arbitrary bytes are a valid point file or an IO_error. The first byte selects the extension. A
+// valid file is unchanged by writing and reading.
 
+#include "Fuzz_file.h"
 #include <pcs/IO/Point_reader.h>
 #include <pcs/IO/read_points.h>
 #include <pcs/IO/write_points.h>
@@ -10,25 +11,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <optional>
 #include <string>
-#include <unistd.h>
 
 namespace {
 
-std::string folder()
-{
-  // A folder in memory is much faster than one on a disk.
-  const std::filesystem::path base = std::filesystem::is_directory("/dev/shm")
-                                         ? std::filesystem::path("/dev/shm")
-                                         : std::filesystem::temp_directory_path();
-  const std::filesystem::path path = base / ("pcs_fuzz_" + std::to_string(::getpid()));
-  std::filesystem::create_directories(path);
-  return path.string();
-}
+using pcs_fuzz::check;
 
 std::optional<pcs::IO::Point_table> read_whole(const std::string& path)
 {
@@ -52,12 +40,6 @@ std::optional<pcs::IO::Point_table> read_in_chunks(const std::string& path)
   }
 }
 
-void check(bool ok)
-{
-  if (!ok)
-    std::abort();
-}
-
 // The format may reject the data. A written file must contain the same points.
 void check_written(const pcs::IO::Point_table& table, const std::string& path)
 {
@@ -78,10 +60,10 @@ void check_written(const pcs::IO::Point_table& table, const std::string& path)
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
-  static const std::string path = folder();
-  const std::string input = path + "/input.xyz"; // data without a magic word is text
-  std::ofstream(input, std::ios::binary)
-      .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
+  if (size == 0)
+    return 0;
+  const char* const names[] = {"i.xyz", "i.ply", "i.las", "i.pcd", "i.ptx", "i.obj", "i.off"};
+  const std::string input = pcs_fuzz::write_file(names[data[0] % 7], data + 1, size - 1);
   const std::optional<pcs::IO::Point_table> whole = read_whole(input);
   const std::optional<pcs::IO::Point_table> parts = read_in_chunks(input);
   check(whole.has_value() == parts.has_value());
@@ -89,6 +71,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return 0;
   check(whole->points() == parts->points());
   for (const char* name : {"/output.ply", "/output.csv", "/output.off", "/output.las"})
-    check_written(*whole, path + name);
+    check_written(*whole, pcs_fuzz::folder() + name);
   return 0;
 }
