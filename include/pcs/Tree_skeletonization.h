@@ -255,7 +255,7 @@ public:
             `node_point_map` and `node_radius_map` given. It becomes a tree with edges from parent
             to child; the first vertex is the root
     \param tree replaced by the result; unchanged if no tree was found or the callback stopped the
-           work
+           work; empty if memory runs out while it is written
   */
   template <class Graph>
   Skeleton_report extract(Graph& tree)
@@ -278,16 +278,18 @@ public:
         report.number_of_points = session().report().number_of_points;
         return report;
       }
-      if (session().report().status == Status::converged) {
-        if constexpr (is_ready_made)
-          skeleton::write_ready_made(session().tree(), session().scan().frame, tree);
-        else
-          skeleton::write_graph(session().tree(), session().scan().frame, m_np, tree);
-      }
+      Skeleton_report report = m_resampled->report(); // before `tree` changes
+      if (session().report().status == Status::converged)
+        skeleton::internal::write_or_clear(tree, [&] {
+          if constexpr (is_ready_made)
+            skeleton::fill_ready_made(session().tree(), session().scan().frame, tree);
+          else
+            skeleton::write_graph(session().tree(), session().scan().frame, m_np, tree);
+        });
       skeleton::write_points(session(), *m_points, m_np);
       if (m_callback)
         m_callback(1);
-      return m_resampled->report();
+      return report;
     } else
       return Skeleton_report();
   }

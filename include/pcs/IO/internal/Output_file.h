@@ -8,6 +8,7 @@
 #include <pcs/IO/internal/extensions.h>
 #include <pcs/core/errors.h>
 
+#include <array>
 #include <cerrno>
 #include <cstddef>
 #include <cstdio>
@@ -41,6 +42,7 @@ public:
   {
     namespace fs = std::filesystem;
     refuse_gz(path);
+    m_buffer.reserve(buffer_size); // first: nothing may throw once the file is open
     std::error_code error;
     const fs::file_status status = fs::status(path, error);
     if (fs::is_directory(status))
@@ -58,7 +60,6 @@ public:
       open_temporary();
     if (m_file == nullptr)
       throw IO_error(path, std::string("cannot be opened for writing: ") + std::strerror(errno));
-    m_buffer.reserve(buffer_size);
   }
 
   Output_file(const Output_file&) = delete;
@@ -149,9 +150,12 @@ private:
   }
 
 #if defined(__linux__) && defined(O_TMPFILE)
-  static std::string link_to(int file)
+  /// Does not allocate memory.
+  static std::array<char, 32> link_to(int file)
   {
-    return "/proc/self/fd/" + std::to_string(file);
+    std::array<char, 32> name{};
+    std::snprintf(name.data(), name.size(), "/proc/self/fd/%d", file);
+    return name;
   }
 
   /// Returns `false` if the file system does not support files without a name, or cannot name
@@ -163,7 +167,7 @@ private:
         ::open(folder.empty() ? "." : folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
     if (file < 0)
       return false;
-    if (::access(link_to(file).c_str(), F_OK) == 0)
+    if (::access(link_to(file).data(), F_OK) == 0)
       m_file = ::fdopen(file, "wb");
     if (m_file == nullptr) {
       ::close(file);
@@ -175,16 +179,14 @@ private:
 
   void give_name()
   {
-    const std::string link = link_to(::fileno(m_file));
-    for (int i = 0; i < most_names && m_temporary.empty(); ++i)
-      if (::linkat(AT_FDCWD,
-                   link.c_str(),
-                   AT_FDCWD,
-                   temporary_name(i).c_str(),
-                   AT_SYMLINK_FOLLOW) == 0)
-        m_temporary = temporary_name(i);
+    const auto link = link_to(::fileno(m_file));
+    for (int i = 0; i < most_names && m_temporary.empty(); ++i) {
+      std::filesystem::path name = temporary_name(i); // before the file has this name
+      if (::linkat(AT_FDCWD, link.data(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0)
+        m_temporary.swap(name);
       else if (errno != EEXIST)
         break;
+    }
     if (m_temporary.empty())
       fail();
   }

@@ -23,13 +23,13 @@ namespace skeleton {
 
 /// Fills a `Tree_skeleton` with all attributes of nodes and branches.
 template <class Graph>
-void write_ready_made(const Branch_tree& found, const Scan_frame& frame, Graph& tree)
+void fill_ready_made(const Branch_tree& found, const Scan_frame& frame, Graph& tree)
 {
   using Node = typename Graph::vertex_bundled;
   using FT = typename Node::FT;
   using P = typename Node::Point_3;
   using V = typename Node::Vector_3;
-  Graph result;
+  tree = Graph();
   for (const Branch_node& from : found.nodes) {
     Node node;
     const Vec3 p = frame.to_input(from.point);
@@ -43,9 +43,9 @@ void write_ready_made(const Branch_tree& found, const Scan_frame& frame, Graph& 
     const Vec3 major = frame.direction_to_input(from.major_axis);
     node.major_axis = V(FT(major.x()), FT(major.y()), FT(major.z()));
     node.branch = from.branch;
-    const auto v = add_vertex(node, result);
+    const auto v = add_vertex(node, tree);
     if (from.parent != none)
-      add_edge(from.parent, v, result);
+      add_edge(from.parent, v, tree);
   }
   Tree_bundle bundle;
   bundle.root = 0;
@@ -57,8 +57,7 @@ void write_ready_made(const Branch_tree& found, const Scan_frame& frame, Graph& 
     branch.id = b;
     bundle.branches.push_back(branch);
   }
-  tree.swap(result);
-  tree[boost::graph_bundle] = bundle; // swap() of Boost 1.74 omits it
+  tree[boost::graph_bundle] = std::move(bundle);
 }
 
 namespace internal {
@@ -87,9 +86,18 @@ void clear_graph(Graph& graph)
     }
 }
 
-} // namespace internal
-
-namespace internal {
+/// Calls `write()`, which writes to a graph. The graph is empty if this throws, for example because
+/// memory runs out.
+template <class Graph, class Write>
+void write_or_clear(Graph& graph, const Write& write)
+{
+  try {
+    write();
+  } catch (...) {
+    clear_graph(graph);
+    throw;
+  }
+}
 
 /// Writes one value per vertex to the map of a named parameter, if it is given. `value(k)` is the
 /// value of node `k`; `Is_value` holds for the permitted value types of the map.
