@@ -29,6 +29,11 @@ using Uint16x8 = std::uint16_t __attribute__((vector_size(16), aligned(2), may_a
 
 constexpr std::uint64_t reciprocal_root_bits = 0x5fe6eb50c7b537a9;
 
+PCS_ALWAYS_INLINE void guess_reciprocal_root(const Double2& x, Double2& y)
+{
+  using Bits = std::uint64_t __attribute__((vector_size(16)));
+  y = reinterpret_cast<Double2>(reciprocal_root_bits - (reinterpret_cast<Bits>(x) >> 1));
+}
 PCS_ALWAYS_INLINE void guess_reciprocal_root(const Double4& x, Double4& y)
 {
   using Bits = std::uint64_t __attribute__((vector_size(32)));
@@ -216,7 +221,36 @@ struct Plain_arithmetic
   }
 };
 
+#if defined(__wasm__)
+/// WebAssembly has no `x * y + z` with one rounding, and its function takes more than ten times as
+/// long as two roundings. Results therefore differ from those of other machines by rounding.
+template <class Lanes>
+struct Twice_rounded_arithmetic : Plain_arithmetic<Lanes>
+{
+  using Doubles = Lanes;
+
+  static PCS_ALWAYS_INLINE void subtract_product(double x, double y, double& z) { z -= x * y; }
+  static PCS_ALWAYS_INLINE void fma(const double& x, const Doubles& y, Doubles& z)
+  {
+    z = z + x * y;
+  }
+  static PCS_ALWAYS_INLINE void fma(const Doubles& x, const Doubles& y, Doubles& z)
+  {
+    z = z + x * y;
+  }
+  static PCS_ALWAYS_INLINE void subtract_product(const Doubles& x, const Doubles& y, Doubles& z)
+  {
+    z = z - x * y;
+  }
+};
+
+using Portable_arithmetic = Twice_rounded_arithmetic<Double4>;
+/// For kernels that need most registers.
+using Narrow_arithmetic = Twice_rounded_arithmetic<Double2>;
+#else
 using Portable_arithmetic = Plain_arithmetic<Double4>;
+using Narrow_arithmetic = Portable_arithmetic;
+#endif
 
 #ifdef PCS_HAS_AVX_ASSEMBLY
 // Assembly, because the fusion of `x * y + z` depends on compiler options, and because compilers

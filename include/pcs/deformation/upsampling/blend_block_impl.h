@@ -284,7 +284,7 @@ PCS_ALWAYS_INLINE void blend_block(const Block_input& in, Block_output& out)
 template <Blend_outputs Outputs>
 void blend_block_default(const Block_input& in, Block_output& out)
 {
-  blend_block<Outputs, pcs::internal::Portable_arithmetic>(in, out);
+  blend_block<Outputs, pcs::internal::Narrow_arithmetic>(in, out);
 }
 
 #if PCS_HAS_RUNTIME_DISPATCH
