@@ -101,6 +101,20 @@ BOOST_AUTO_TEST_CASE(a_mean_mixes_points_and_properties)
   BOOST_TEST(exists("out/weighted_mean_surface.ply"));
 }
 
+BOOST_AUTO_TEST_CASE(trees_of_given_scores_are_written)
+{
+  succeeds(skeletons + "--modes 2 --scores=-2 --scores=2,0 --scores 0,1 --output out");
+  BOOST_TEST(content("out/scores_0000.swc") == content("out/mode_1_minus.swc"));
+  BOOST_TEST(content("out/scores_0001.swc") == content("out/mode_1_plus.swc"));
+  BOOST_TEST(content("out/scores_0002.swc") != content("out/mode_2_plus.swc"));
+  BOOST_TEST(!exists("out/scores_0003.swc"));
+  refuses(skeletons + "--modes 2 --scores 1,2,3 --output three", "at most one per mode");
+  BOOST_TEST(!exists("three/mode_1_plus.swc"));
+  refuses(skeletons + "--modes 2 --scores 1,,2 --output three", "numbers separated by commas");
+  refuses(skeletons + "--modes 2 --scores 1,nan --output three", "between -100 and 100");
+  refuses(skeletons + "--mean --scores 1 --output three", "without --modes");
+}
+
 BOOST_AUTO_TEST_CASE(modes_and_new_trees_are_written)
 {
   succeeds(skeletons + "--modes 2 --sample 3 --seed 5 --distances d.csv --output out");

@@ -46,6 +46,7 @@ struct Options
   std::size_t number_of_modes = 0, number_of_samples = 0, number_of_frames = 11;
   std::int64_t seed = 1; // signed, because CLI11 would convert -1 to a large unsigned number
   std::vector<double> weights, times;
+  std::vector<std::vector<double>> scores; ///< of one tree each
   double pipe_exponent = 0;
 
   bool is_given(const std::string& name) const { return given.count(name) > 0; }
@@ -60,8 +61,23 @@ struct Options
   bool has_places() const { return is_given("--lambda") || !is_family(); }
 };
 
-/// Adds an option for numbers separated by commas. CLI11 would read an empty string as 0, and omit
-/// empty numbers between two commas.
+/// Appends numbers separated by commas. CLI11 would read an empty string as 0, and omit empty
+/// numbers between two commas.
+inline void
+append_numbers(const std::string& name, const std::string& list, std::vector<double>& values)
+{
+  std::istringstream words(list + ',');
+  for (std::string word; std::getline(words, word, ',');) {
+    double value = 0;
+    if (!CLI::detail::lexical_cast(CLI::detail::trim_copy(word), value) ||
+        CLI::detail::trim_copy(word).empty())
+      throw CLI::ValidationError(name,
+                                 "expected numbers separated by commas, found '" + list + "'");
+    values.push_back(value);
+  }
+}
+
+/// Adds an option for numbers separated by commas.
 inline CLI::Option* add_numbers(CLI::App& app,
                                 const std::string& name,
                                 std::vector<double>& values,
@@ -69,17 +85,8 @@ inline CLI::Option* add_numbers(CLI::App& app,
 {
   const auto read = [name, &values](const std::vector<std::string>& lists) {
     values.clear();
-    for (const std::string& list : lists) {
-      std::istringstream words(list + ',');
-      for (std::string word; std::getline(words, word, ',');) {
-        double value = 0;
-        if (!CLI::detail::lexical_cast(CLI::detail::trim_copy(word), value) ||
-            CLI::detail::trim_copy(word).empty())
-          throw CLI::ValidationError(name,
-                                     "expected numbers separated by commas, found '" + list + "'");
-        values.push_back(value);
-      }
-    }
+    for (const std::string& list : lists)
+      append_numbers(name, list, values);
   };
   return app.add_option_function<std::vector<std::string>>(name, read, what)
       ->type_name("FLOAT,...");
@@ -115,6 +122,17 @@ inline void declare_family(CLI::App& app, Options& o)
                  "them, or the metric, for trees that differ in the presence of branches")
       ->check(CLI::IsMember({"branches", "metric"}))
       ->capture_default_str()
+      ->group(group);
+  app.add_option_function<std::vector<std::string>>(
+         "--scores",
+         [&o](const std::vector<std::string>& lists) {
+           for (const std::string& list : lists)
+             append_numbers("--scores", list, o.scores.emplace_back());
+         },
+         "scores of a tree on the modes, in standard deviations; once for each tree: "
+         "scores_0000.swc, ...")
+      ->type_name("FLOAT,...")
+      ->allow_extra_args(false)
       ->group(group);
   app.add_option("--sample", o.number_of_samples, "number of random trees: sample_0000.swc, ...")
       ->check(CLI::Range(0, 10000))
@@ -277,7 +295,7 @@ inline void check_effects(const Options& o)
          {"--limit-radii"},
          "without --lambda or --sample");
   refuse(!o.do_mean, {"--mean-kind"}, "without --mean");
-  refuse(o.number_of_modes == 0, {"--mode-inner-product"}, "without --modes");
+  refuse(o.number_of_modes == 0, {"--mode-inner-product", "--scores"}, "without --modes");
   refuse(o.number_of_samples == 0,
          {"--seed", "--any-range", "--pipe-model"},
          "without --sample: no random trees are drawn");
@@ -303,6 +321,10 @@ inline void check_numbers(const Options& o, std::size_t number_of_trees)
   for (std::size_t k = 1; k < o.times.size(); ++k)
     if (!(o.times[k] > o.times[k - 1]))
       throw pcs::Invalid_input("--times must increase");
+  for (const std::vector<double>& scores : o.scores)
+    for (const double x : scores)
+      if (!std::isfinite(x) || std::abs(x) > 100)
+        throw pcs::Invalid_input("--scores must be numbers between -100 and 100");
   if (!o.changes.empty() && number_of_trees != 2)
     throw pcs::Invalid_input("--changes is for two trees, there are " +
                              std::to_string(number_of_trees));

@@ -10,6 +10,7 @@
 #include "common/Report_file.h"
 #include "write_tree.h"
 #include <pcs/compare_trees.h>
+#include <pcs/core/errors.h>
 #include <pcs/find_modes.h>
 #include <pcs/fit_growth_path.h>
 #include <pcs/mean_tree.h>
@@ -27,6 +28,20 @@
 
 namespace orl_program {
 
+/// Writes a tree for each --scores.
+inline void write_trees_of_scores(const Space& space,
+                                  const pcs::Modes_of_variation& modes,
+                                  const std::vector<Tree_file>& files,
+                                  const Options& o)
+{
+  for (std::size_t i = 0; i < o.scores.size(); ++i)
+    write_tree(space,
+               pcs::tree_of_modes(space, modes, o.scores[i]),
+               files,
+               o,
+               numbered("scores", i));
+}
+
 inline void write_modes(const Space& space, const std::vector<Tree_file>& files, const Options& o)
 {
   program::Report_file report((std::filesystem::path(o.output) / "modes.json").string());
@@ -35,6 +50,11 @@ inline void write_modes(const Space& space, const std::vector<Tree_file>& files,
       o.number_of_modes,
       np::mode_inner_product(o.mode_inner_product == "metric" ? pcs::Mode_inner_product::metric
                                                               : pcs::Mode_inner_product::branches));
+  for (const std::vector<double>& scores : o.scores)
+    if (scores.size() > modes.size())
+      throw pcs::Invalid_input("--scores has " + std::to_string(scores.size()) + " numbers for " +
+                               std::to_string(modes.size()) +
+                               " modes; expected at most one per mode");
   if (modes.size() < o.number_of_modes && !o.is_quiet)
     std::cerr << "orl_geodesic: warning: these " << space.number_of_trees()
               << " trees have no more than " << modes.size() << " mode(s)\n";
@@ -60,6 +80,7 @@ inline void write_modes(const Space& space, const std::vector<Tree_file>& files,
                  "mode_" + std::to_string(k + 1) + (side < 0 ? "_minus" : "_plus"));
     }
   }
+  write_trees_of_scores(space, modes, files, o);
   json["left_out_error_of_mean"] = modes.left_out_error(0);
   for (std::size_t h = 0; h < space.number_of_trees(); ++h)
     json["outlier_scores"].push_back(pcs::outlier_score(space, modes, space.tree(h)));
