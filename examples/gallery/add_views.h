@@ -156,15 +156,26 @@ inline void add_scan(const Options& o, Page& page)
   page.views.push_back(view);
 }
 
+inline std::vector<std::filesystem::path> files_of_folder(const std::string& folder)
+{
+  if (!std::filesystem::is_directory(folder))
+    throw pcs::IO_error(folder, "is not a folder");
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
 /// Returns the files lambda_*.ply of a folder by their numbers.
 inline std::map<double, std::string> files_of_path(const std::string& folder)
 {
   std::map<double, std::string> files;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+  for (const std::filesystem::path& path : files_of_folder(folder)) {
     double lambda = 0;
-    if (entry.path().extension() == ".ply" &&
-        std::sscanf(entry.path().filename().string().c_str(), "lambda_%lf", &lambda) == 1)
-      files[lambda] = entry.path().string();
+    if (path.extension() == ".ply" &&
+        std::sscanf(path.filename().string().c_str(), "lambda_%lf", &lambda) == 1)
+      files[lambda] = path.string();
   }
   if (files.size() < 2)
     throw pcs::IO_error(folder, "has fewer than two files lambda_*.ply of orl_geodesic");
@@ -206,12 +217,9 @@ inline constexpr std::size_t nodes_of_branch = 8;
 inline std::vector<std::string> skeletons_of(const std::string& folder, const std::string& stem)
 {
   std::vector<std::string> files;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    if (name.rfind(stem, 0) == 0 && entry.path().extension() == ".swc")
-      files.push_back(entry.path().string());
-  }
-  std::sort(files.begin(), files.end());
+  for (const std::filesystem::path& path : files_of_folder(folder))
+    if (path.filename().string().rfind(stem, 0) == 0 && path.extension() == ".swc")
+      files.push_back(path.string());
   return files;
 }
 
@@ -224,7 +232,7 @@ inline void check_branches(const Branches& tree, const Branches& first, const st
 }
 
 /// A grid of trees over two modes of variation, and random trees. The trees of the grid are the
-/// files scores_*.swc, in the order of `scores.json`: a list of pairs.
+/// files scores_*.swc, the second score fastest, from -2 to 2 standard deviations.
 inline void add_family(const Options& o, Page& page)
 {
   std::vector<std::vector<Point>> points;

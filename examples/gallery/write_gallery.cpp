@@ -72,8 +72,9 @@ bool work(const gallery::Options& o)
   const std::string html =
       page.html(o.page, o.editor.empty() ? std::string() : gallery::text_of_file(o.editor));
   file.commit(html);
-  std::cerr << page.views.size() << " views, " << static_cast<double>(html.size() / 100000) / 10 << " MB, "
-            << (o.editor.empty() ? "without" : "with") << " the live editor: " << o.output << '\n';
+  std::cerr << page.views.size() << " views, " << static_cast<double>(html.size() / 100000) / 10
+            << " MB, " << (o.editor.empty() ? "without" : "with")
+            << " the live editor: " << o.output << '\n';
   return true;
 }
 
