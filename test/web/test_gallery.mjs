@@ -14,6 +14,7 @@ let browser, hasEditor, ids;
 // Functions of the page: the share of pixels that are not background, and a checksum of all.
 const helpers = `
   function picture() {
+    renderer.thinning = 1;
     renderer.draw();
     const {gl, canvas} = renderer, {width, height} = canvas;
     const bytes = new Uint8Array(4 * width * height);

@@ -80,7 +80,7 @@ class LiveEditor {
   async open() {
     const {renderer, cloud} = this;
     renderer.frame(...boundsOf(this.rest), cloud.up);
-    const size = 3.6 * renderer.camera.radius / Math.sqrt(this.owner.length);
+    const size = 4.8 * renderer.camera.radius / Math.sqrt(this.owner.length);
     this.layer = renderer.addPoints(this.rest, this.colors(), size);
     if (typeof createEditor === 'undefined') {
       this.controls.note('The live editor is not part of this page. ./run web builds it. It needs ' +

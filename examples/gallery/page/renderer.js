@@ -16,14 +16,12 @@ const shaders = {
     out vec3 shade;
     void main() {
       gl_Position = projection * (view * vec4(position, 1.0));
-      gl_PointSize = clamp(size / gl_Position.w, smallest, 24.0);
+      gl_PointSize = clamp(size / gl_Position.w, smallest, 12.0);
       shade = color;
     }`, `
     in vec3 shade;
     out vec4 result;
     void main() {
-      vec2 v = 2.0 * gl_PointCoord - 1.0;
-      if (dot(v, v) > 1.2) discard;
       result = vec4(shade, 1.0);
     }`],
   // A segment between two circles: a rectangle that faces the camera, shaded as a cylinder.
@@ -79,27 +77,28 @@ const shaders = {
     uniform vec2 range;
     uniform int reach;
     out vec4 result;
-    float far(ivec2 at) {
-      float d = texelFetch(depths, clamp(at, ivec2(0), textureSize(depths, 0) - 1), 0).r;
-      return log2(range.x * range.y / (range.y - d * (range.y - range.x)));
+    float depth(ivec2 at) {
+      return texelFetch(depths, clamp(at, ivec2(0), textureSize(depths, 0) - 1), 0).r;
     }
     // Pixels with nearer pixels almost all around them are holes between points, and are filled.
     void main() {
       ivec2 at = ivec2(gl_FragCoord.xy), nearest = at;
-      float own = far(at), behind = 0.0, least = own;
+      // the inverse distance from the camera is linear in the depth
+      float a = 1.0 / range.x, b = 1.0 / range.x - 1.0 / range.y;
+      float least = depth(at), own = 1.0 / (a - b * least), behind = 0.0;
       int nearer = 0;
       for (int k = 0; k < 9; ++k) {
         ivec2 other = at + reach * ivec2(k % 3 - 1, k / 3 - 1);
-        float d = far(other);
-        behind += max(0.0, own - d);
-        nearer += own - d > 0.01 ? 1 : 0;
+        float d = depth(other), step = max(0.0, own * (a - b * d) - 1.0);
+        behind += step;
+        nearer += step > 0.01 ? 1 : 0;
         if (d < least) { least = d; nearest = other; }
       }
       bool is_hole = nearer > 5;
       if (is_hole) at = nearest;
       bool is_empty = texelFetch(depths, at, 0).r == 1.0;
       vec3 color = is_empty ? background : texelFetch(scene, at, 0).rgb;
-      float light = is_empty || is_hole ? 1.0 : exp(-min(behind * 7.0, 0.9));
+      float light = is_empty || is_hole ? 1.0 : exp(-min(behind * 10.0, 0.9));
       result = vec4(color * light, 1.0);
     }`],
 };
@@ -115,6 +114,7 @@ class Renderer {
     this.camera = {target: [0, 0, 0], radius: 1, distance: 4, size: [1, 1, 1], yaw: 0.6, pitch: 0.25, up: 'z'};
     this.background = [1, 1, 1];
     this.afterDraw = () => {};
+    this.thinning = 1; // every how many points are drawn
     this.programs = {};
     for (const [name, [vertex, fragment]] of Object.entries(shaders))
       this.programs[name] = this.link(vertex, fragment);
@@ -315,7 +315,8 @@ class Renderer {
 
   /// Textures of the size of the canvas for colour and depth.
   resize() {
-    const gl = this.gl, {canvas} = this, ratio = Math.min(2, window.devicePixelRatio || 1);
+    const gl = this.gl, {canvas} = this;
+    const ratio = Math.min(2, window.devicePixelRatio || 1) * (this.thinning > 2 ? 0.5 : 1);
     const width = Math.max(1, Math.round(canvas.clientWidth * ratio));
     const height = Math.max(1, Math.round(canvas.clientHeight * ratio));
     this.ratio = ratio;
@@ -352,9 +353,14 @@ class Renderer {
       gl.uniformMatrix4fv(program.at('projection'), false, projection);
       gl.bindVertexArray(layer.array);
       if (layer.kind === 'points') {
-        gl.uniform1f(program.at('size'), layer.size * scale);
-        gl.uniform1f(program.at('smallest'), 1.5 * this.ratio);
-        gl.drawArrays(gl.POINTS, 0, layer.count);
+        const n = this.thinning, larger = Math.sqrt(n);
+        gl.uniform1f(program.at('size'), larger * layer.size * scale);
+        gl.uniform1f(program.at('smallest'), larger * 1.5 * this.ratio);
+        [[gl.FLOAT, 12], [gl.UNSIGNED_BYTE, 3]].forEach(([type, bytes], i) => {
+          gl.bindBuffer(gl.ARRAY_BUFFER, layer.buffers[i]);
+          gl.vertexAttribPointer(i, 3, type, i === 1, n * bytes, 0);
+        });
+        gl.drawArrays(gl.POINTS, 0, Math.floor(layer.count / n));
       } else if (layer.kind === 'tubes') {
         gl.uniform1f(program.at('pixel'), 1 / scale);
         gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, layer.count);
@@ -371,8 +377,29 @@ class Renderer {
     gl.uniform1i(program.at('depths'), 1);
     gl.uniform3fv(program.at('background'), this.background);
     gl.uniform2fv(program.at('range'), range);
-    gl.uniform1i(program.at('reach'), Math.round(this.ratio));
+    gl.uniform1i(program.at('reach'), Math.max(1, Math.round(this.ratio)));
     gl.drawArrays(gl.TRIANGLES, 0, 3);
+    this.adaptThinning();
     this.afterDraw();
+  }
+
+  /// Draws fewer points, then fewer pixels, while the picture moves, if the browser is slow.
+  adaptThinning() {
+    const now = performance.now(), interval = now - (this.lastDraw ?? -1e9);
+    this.lastDraw = now;
+    const isMoving = interval < 1000 && !this.isRefining;
+    this.slow = isMoving && interval > 45 ? (this.slow || 0) + 1 : 0;
+    if (this.slow > 2 && this.thinning < 4) {
+      this.thinning *= 2;
+      this.slow = 0;
+    }
+    this.isRefining = false;
+    clearTimeout(this.refinement);
+    if (this.thinning > 1)
+      this.refinement = setTimeout(() => {
+        this.thinning = 1;
+        this.isRefining = true;
+        this.redraw();
+      }, 400);
   }
 }

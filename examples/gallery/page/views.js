@@ -313,7 +313,7 @@ const views = {
       const [a, b] = [boundsOf(rest), boundsOf(deformed)];
       renderer.frame(a[0].map((x, c) => Math.min(x, b[0][c])), a[1].map((x, c) => Math.max(x, b[1][c])),
                      data.up);
-      const size = 3.6 * renderer.camera.radius / Math.sqrt(moved.length);
+      const size = 4.8 * renderer.camera.radius / Math.sqrt(moved.length);
       const points = renderer.addPoints(positions, colorsOf(moved.length, (i) =>
         colorOfFraction(moved[i] / most)), size);
       controls.slider('From rest to deformed', {
