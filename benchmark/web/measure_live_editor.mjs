@@ -6,6 +6,7 @@
 import {statSync} from 'node:fs';
 import {resolve} from 'node:path';
 import {pathToFileURL} from 'node:url';
+
 import {Browser} from '../../test/web/Browser.mjs';
 
 const path = resolve(process.argv[2] || 'build/output/gallery/index.html');
@@ -14,9 +15,11 @@ const frames = 120;
 // A drag back and forth. A frame ends when its pixels can be read, which waits for the drawing.
 const drag = `(async () => {
   const box = canvas.getBoundingClientRect(), points = editor.session.points();
-  const i = editor.owner.indexOf(1), at = renderer.projector()(...points.subarray(3 * i, 3 * i + 3), []);
+  const i = editor.owner.indexOf(1);
+  const at = renderer.projector()(...points.subarray(3 * i, 3 * i + 3), []);
   const send = (type, x, y) => canvas.dispatchEvent(new PointerEvent(type, {
-    pointerId: 1, button: 0, buttons: 1, clientX: box.left + x, clientY: box.top + y, bubbles: true}));
+    pointerId: 1, button: 0, buttons: 1, clientX: box.left + x, clientY: box.top + y,
+    bubbles: true}));
   canvas.setPointerCapture = () => {};
   action = {kind: 'drag', handle: 1, x: at[0], y: at[1]};
   pointers.set(1, [at[0], at[1]]);
@@ -26,22 +29,25 @@ const drag = `(async () => {
     const sent = performance.now();
     send('pointermove', at[0] + 60 * Math.sin(k / 10), at[1] + 30 * Math.sin(k / 7));
     await new Promise((done) => { renderer.afterDraw = done; });
-    renderer.gl.readPixels(0, 0, 1, 1, renderer.gl.RGBA, renderer.gl.UNSIGNED_BYTE, new Uint8Array(4));
+    const {gl} = renderer;
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
     latencies.push(performance.now() - sent);
     solves.push(editor.solveTime);
   }
   const seconds = (performance.now() - first) / 1000;
   send('pointerup', at[0], at[1]);
-  return {points: editor.owner.length, samples: editor.session.numberOfSamples, start: editor.secondsToStart,
+  return {points: editor.owner.length, samples: editor.session.numberOfSamples,
+          start: editor.secondsToStart, drawn: editor.owner.length / renderer.thinning,
           handles: editor.secondsToFactorize, rate: ${frames} / seconds, solves, latencies,
-          memory: editor.session.module.HEAPU8.length / 1e6, drawn: editor.owner.length / renderer.thinning};
+          memory: editor.session.module.HEAPU8.length / 1e6};
 })()`;
 
 const sorted = (values) => [...values].sort((a, b) => a - b);
 const show = (name, values) => {
   const s = sorted(values);
-  console.log(`${name}: median ${s[s.length >> 1].toFixed(1)} ms, 95 % below ` +
-              `${s[Math.floor(0.95 * s.length)].toFixed(1)} ms`);
+  console.log(
+      `${name}: median ${s[s.length >> 1].toFixed(1)} ms, 95 % below ` +
+      `${s[Math.floor(0.95 * s.length)].toFixed(1)} ms`);
 };
 
 console.log(`page: ${(statSync(path).size / 1e6).toFixed(1)} MB`);
@@ -55,15 +61,16 @@ try {
     await browser.call('Page.navigate', {url: `${pathToFileURL(path).href}#live`});
     await browser.until(`document.documentElement?.dataset.ready === 'live'`, 'the editor');
     const seconds = (Date.now() - begin) / 1000;
-    await browser.evaluate(drag); // the browser optimises the code meanwhile
+    await browser.evaluate(drag);  // the browser optimises the code meanwhile
     const r = await browser.evaluate(drag);
-    console.log(`window ${width} x ${height}: ${r.points} points, ${r.samples} samples; ready after ` +
-                `${seconds.toFixed(1)} s, of which neighbours and samples ${r.start.toFixed(1)} s, handles ` +
-                `${r.handles.toFixed(2)} s; ${r.memory.toFixed(0)} MB`);
+    console.log(
+        `window ${width} x ${height}: ${r.points} points, ${r.samples} samples; ready after ` +
+        `${seconds.toFixed(1)} s, of which neighbours and samples ${
+            r.start.toFixed(1)} s, handles ` +
+        `${r.handles.toFixed(2)} s; ${r.memory.toFixed(0)} MB`);
     show('  solve', r.solves);
     show('  pointer to picture', r.latencies);
-    console.log(`  frames per second: ${r.rate.toFixed(1)}, ${r.drawn.toFixed(0)} points drawn in each`);
+    console.log(
+        `  frames per second: ${r.rate.toFixed(1)}, ${r.drawn.toFixed(0)} points drawn in each`);
   }
-} finally {
-  await browser.close();
-}
+} finally { await browser.close(); }

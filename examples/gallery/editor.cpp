@@ -16,6 +16,7 @@
 #include <exception>
 #include <memory>
 #include <new>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,13 @@ int attempt(const Work& work)
   return -1;
 }
 
+Session& session()
+{
+  if (!editor.session)
+    throw std::logic_error("No points are loaded.");
+  return *editor.session;
+}
+
 } // namespace
 
 // Functions return -1 after an error.
@@ -84,7 +92,7 @@ EMSCRIPTEN_KEEPALIVE int editor_start(int number_of_samples)
     editor.session =
         std::make_unique<Session>(editor.points,
                                   pcs::parameters::number_of_samples(number_of_samples));
-    return static_cast<int>(editor.session->number_of_samples());
+    return static_cast<int>(session().number_of_samples());
   });
 }
 
@@ -105,13 +113,13 @@ EMSCRIPTEN_KEEPALIVE std::uint32_t* editor_indices()
 /// Returns the number of the handle.
 EMSCRIPTEN_KEEPALIVE int editor_add_handle()
 {
-  return attempt([] { return static_cast<int>(editor.session->add_handle(editor.indices)); });
+  return attempt([] { return static_cast<int>(session().add_handle(editor.indices)); });
 }
 
 EMSCRIPTEN_KEEPALIVE int editor_remove_handle(int handle)
 {
   return attempt([&] {
-    editor.session->remove_handle(static_cast<std::size_t>(handle));
+    session().remove_handle(static_cast<std::size_t>(handle));
     return 0;
   });
 }
@@ -130,13 +138,13 @@ EMSCRIPTEN_KEEPALIVE int editor_move(int handle,
 {
   return attempt([&] {
     const auto h = static_cast<std::size_t>(handle);
-    const Point c = editor.session->centroid(h);
+    const Point c = session().centroid(h);
     const Eigen::Vector3d center(c.x(), c.y(), c.z());
     Eigen::Affine3d motion = Eigen::Affine3d::Identity();
     motion.linear() =
         scale * Eigen::Quaterniond(turn_w, turn_x, turn_y, turn_z).normalized().toRotationMatrix();
     motion.translation() = center + Eigen::Vector3d(x, y, z) - motion.linear() * center;
-    editor.session->set_transformation(h, motion);
+    session().set_transformation(h, motion);
     return 0;
   });
 }
@@ -146,7 +154,7 @@ EMSCRIPTEN_KEEPALIVE int editor_deform(int is_warm)
 {
   return attempt([&] {
     const pcs::Deformation_report report =
-        editor.session->deform(is_warm != 0 ? pcs::Solver_start::warm : pcs::Solver_start::cold);
+        session().deform(is_warm != 0 ? pcs::Solver_start::warm : pcs::Solver_start::cold);
     return static_cast<int>(report.status);
   });
 }
@@ -155,7 +163,7 @@ EMSCRIPTEN_KEEPALIVE int editor_deform(int is_warm)
 EMSCRIPTEN_KEEPALIVE int editor_accept()
 {
   return attempt([] {
-    editor.session->accept();
+    session().accept();
     return 0;
   });
 }

@@ -18,15 +18,28 @@ export class Browser {
 
   constructor(executable) {
     this.folder = mkdtempSync(join(tmpdir(), 'pcs_web_'));
-    this.process = spawn(executable, [
-      '--headless=new', '--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader',
-      '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist', '--disable-dev-shm-usage',
-      '--no-first-run', '--disable-extensions', '--disable-background-networking', '--hide-scrollbars',
-      '--remote-debugging-pipe', `--user-data-dir=${this.folder}`, 'about:blank',
-    ], {stdio: ['ignore', 'ignore', 'ignore', 'pipe', 'pipe']});
+    this.process = spawn(
+        executable,
+        [
+          '--headless=new',
+          '--no-sandbox',
+          '--use-gl=angle',
+          '--use-angle=swiftshader',
+          '--enable-unsafe-swiftshader',
+          '--ignore-gpu-blocklist',
+          '--disable-dev-shm-usage',
+          '--no-first-run',
+          '--disable-extensions',
+          '--disable-background-networking',
+          '--hide-scrollbars',
+          '--remote-debugging-pipe',
+          `--user-data-dir=${this.folder}`,
+          'about:blank',
+        ],
+        {stdio: ['ignore', 'ignore', 'ignore', 'pipe', 'pipe']});
     this.number = 0;
     this.waiting = new Map();
-    this.errors = []; // exceptions and console errors of the page
+    this.errors = [];  // exceptions and console errors of the page
     let text = '';
     this.process.stdio[4].setEncoding('utf8').on('data', (chunk) => {
       const parts = (text + chunk).split('\0');
@@ -56,7 +69,8 @@ export class Browser {
       this.errors.push(params.args.map((arg) => arg.value ?? arg.description).join(' '));
     } else if (method === 'Log.entryAdded' && params.entry.level === 'error') {
       this.errors.push(params.entry.text);
-    } else if (method === 'Network.requestWillBeSent' && /^(https?|wss?):/.test(params.request.url)) {
+    } else if (
+        method === 'Network.requestWillBeSent' && /^(https?|wss?):/.test(params.request.url)) {
       this.errors.push(`request to the network: ${params.request.url}`);
     }
   }
@@ -88,8 +102,8 @@ export class Browser {
 
   /// Returns the value of an expression of the page; promises are awaited.
   async evaluate(expression) {
-    const {result, exceptionDetails} = await this.call(
-      'Runtime.evaluate', {expression, awaitPromise: true, returnByValue: true});
+    const {result, exceptionDetails} =
+        await this.call('Runtime.evaluate', {expression, awaitPromise: true, returnByValue: true});
     if (exceptionDetails)
       throw new Error(exceptionDetails.exception?.description || exceptionDetails.text);
     return result.value;
@@ -103,15 +117,22 @@ export class Browser {
   }
 
   async resize(width, height, scheme = 'light') {
-    await this.call('Emulation.setDeviceMetricsOverride',
-                    {width, height, deviceScaleFactor: 1, mobile: false});
-    await this.call('Emulation.setEmulatedMedia',
-                    {features: [{name: 'prefers-color-scheme', value: scheme}]});
+    await this.call(
+        'Emulation.setDeviceMetricsOverride', {width, height, deviceScaleFactor: 1, mobile: false});
+    await this.call(
+        'Emulation.setEmulatedMedia', {features: [{name: 'prefers-color-scheme', value: scheme}]});
   }
 
   async mouse(type, x, y, button = 'none', modifiers = 0) {
-    await this.call('Input.dispatchMouseEvent',
-                    {type, x, y, button, buttons: {none: 0, left: 1, right: 2}[button], modifiers, clickCount: 1});
+    await this.call('Input.dispatchMouseEvent', {
+      type,
+      x,
+      y,
+      button,
+      buttons: {none: 0, left: 1, right: 2}[button],
+      modifiers,
+      clickCount: 1
+    });
   }
 
   /// Drags from one place to another in steps.
@@ -119,7 +140,8 @@ export class Browser {
     await this.mouse('mouseMoved', x0, y0);
     await this.mouse('mousePressed', x0, y0, 'left');
     for (let i = 1; i <= steps; ++i)
-      await this.mouse('mouseMoved', x0 + (x1 - x0) * i / steps, y0 + (y1 - y0) * i / steps, 'left');
+      await this.mouse(
+          'mouseMoved', x0 + (x1 - x0) * i / steps, y0 + (y1 - y0) * i / steps, 'left');
     await this.mouse('mouseReleased', x1, y1, 'left');
   }
 
@@ -132,7 +154,8 @@ export class Browser {
   }
 
   async screenshot(clip) {
-    const {data} = await this.call('Page.captureScreenshot', {format: 'png', ...(clip && {clip: {...clip, scale: 1}})});
+    const {data} = await this.call(
+        'Page.captureScreenshot', {format: 'png', ...(clip && {clip: {...clip, scale: 1}})});
     return Buffer.from(data, 'base64');
   }
 }

@@ -2,7 +2,12 @@
 // SPDX-License-Identifier: BSL-1.0
 // Decodes the arrays of the page, and makes colours.
 
-const arrayTypes = {u8: Uint8Array, u16: Uint16Array, u32: Uint32Array, f32: Float32Array};
+const arrayTypes = {
+  u8: Uint8Array,
+  u16: Uint16Array,
+  u32: Uint32Array,
+  f32: Float32Array
+};
 
 /// Returns the numbers of a description as a typed array.
 function decode(description) {
@@ -12,11 +17,16 @@ function decode(description) {
   return new arrayTypes[description.type](bytes.buffer);
 }
 
-/// Returns coordinates x, y, z of points one after the other.
-function decodePoints(description) {
+/// The origin of a view. Single precision would round large coordinates, such as those of a map.
+function originOf({scale, offset}) {
+  return offset.some((x) => Math.abs(x) > 100 * 65535 * scale) ? offset : [0, 0, 0];
+}
+
+/// Returns coordinates x, y, z of points one after the other, relative to an origin.
+function decodePoints(description, origin = [0, 0, 0]) {
   const numbers = decode(description), result = new Float32Array(numbers.length);
   const {scale, offset} = description;
-  for (let i = 0; i < numbers.length; ++i) result[i] = offset[i % 3] + scale * numbers[i];
+  for (let i = 0; i < numbers.length; ++i) result[i] = offset[i % 3] - origin[i % 3] + scale * numbers[i];
   return result;
 }
 
@@ -48,6 +58,30 @@ function innerBoundsOf(positions) {
   return [low, high];
 }
 
+/// Estimates the distance between neighbours of a surface of points: the size of cells that hold two
+/// points on average, for a subset, by bisection.
+function spacingOf(positions) {
+  const n = positions.length / 3, step = Math.max(1, Math.floor(n / 30000));
+  const [low, high] = innerBoundsOf(positions);
+  let fine = 0, coarse = Math.max(...low.map((x, c) => high[c] - x)) || 1;
+  for (let pass = 0; pass < 12; ++pass) {
+    const size = fine ? Math.sqrt(fine * coarse) : coarse / 64, cells = new Set();
+    for (let i = 0; i < positions.length; i += 3 * step) {
+      const [x, y, z] = [0, 1, 2].map((c) => Math.floor((positions[i + c] - low[c]) / size));
+      cells.add((x * 73856093) ^ (y * 19349663) ^ (z * 83492791));
+    }
+    if (2 * cells.size * step > n) fine = size;
+    else coarse = size;
+    if (!fine) coarse = size;
+  }
+  return (fine || coarse) / Math.sqrt(2 * step);
+}
+
+/// The size at which points of a surface are drawn: without gaps, unless they are far apart.
+function sizeOfPoints(positions, radius) {
+  return Math.min(2.7 * spacingOf(positions), radius / 130);
+}
+
 /// Sets `result` to `(1 - t) a + t b`.
 function mix(a, b, t, result) {
   for (let i = 0; i < a.length; ++i) result[i] = a[i] + t * (b[i] - a[i]);
@@ -58,8 +92,10 @@ function mix(a, b, t, result) {
 
 const grey = [138, 138, 134];
 // Colours that differ for most forms of colour blindness (M. Okabe, K. Ito, 2008).
-const distinct = [[140, 92, 56], [0, 114, 178], [0, 158, 115], [230, 159, 0], [204, 121, 167],
-                  [86, 180, 233], [213, 94, 0]];
+const distinct = [
+  [140, 92, 56], [0, 114, 178], [0, 158, 115], [230, 159, 0], [204, 121, 167], [86, 180, 233],
+  [213, 94, 0]
+];
 
 /// A colour for an index; neighbouring indices have different hues.
 function colorOfIndex(i) {

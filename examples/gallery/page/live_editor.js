@@ -8,10 +8,12 @@ const colorOfHandle = (h) => distinct[(h + 2) % distinct.length];
 
 /// The product of two quaternions x, y, z, w: first `b`, then `a`.
 function productOfTurns(a, b) {
-  return [a[3] * b[0] + a[0] * b[3] + a[1] * b[2] - a[2] * b[1],
-          a[3] * b[1] - a[0] * b[2] + a[1] * b[3] + a[2] * b[0],
-          a[3] * b[2] + a[0] * b[1] - a[1] * b[0] + a[2] * b[3],
-          a[3] * b[3] - a[0] * b[0] - a[1] * b[1] - a[2] * b[2]];
+  return [
+    a[3] * b[0] + a[0] * b[3] + a[1] * b[2] - a[2] * b[1],
+    a[3] * b[1] - a[0] * b[2] + a[1] * b[3] + a[2] * b[0],
+    a[3] * b[2] + a[0] * b[1] - a[1] * b[0] + a[2] * b[3],
+    a[3] * b[3] - a[0] * b[0] - a[1] * b[1] - a[2] * b[2]
+  ];
 }
 function turnAbout(axis, angle) {
   const s = Math.sin(angle / 2);
@@ -60,7 +62,8 @@ class Session {
   }
   /// Solves and writes the points. `isWarm` continues from the last result.
   deform(isWarm) {
-    const names = ['converged', 'iteration limit', 'nothing to do', 'cancelled', 'numerical failure'];
+    const names =
+        ['converged', 'iteration limit', 'nothing to do', 'cancelled', 'numerical failure'];
     return names[this.check(this.module._editor_deform(isWarm ? 1 : 0))];
   }
 }
@@ -68,7 +71,7 @@ class Session {
 class LiveEditor {
   constructor(renderer, controls, cloud, showError) {
     Object.assign(this, {renderer, controls, cloud, showError});
-    this.handles = []; // {id of the session, indices, motion, center}
+    this.handles = [];  // {id of the session, indices, motion, center}
     this.past = [];
     this.tool = 'move';
     this.rest = cloud.positions;
@@ -80,30 +83,34 @@ class LiveEditor {
   async open() {
     const {renderer, cloud} = this;
     renderer.frame(...boundsOf(this.rest), cloud.up);
-    const size = 4.8 * renderer.camera.radius / Math.sqrt(this.owner.length);
+    const size = sizeOfPoints(this.rest, renderer.camera.radius);
     this.layer = renderer.addPoints(this.rest, this.colors(), size);
     if (typeof createEditor === 'undefined') {
-      this.controls.note('The live editor is not part of this page. ./run web builds it. It needs ' +
-                         'Debian’s package emscripten.');
+      this.controls.note(
+          'The live editor is not part of this page. ./run web builds it. It needs ' +
+          'Debian’s package emscripten.');
       return;
     }
     const note = this.controls.note(`Preparing ${count(this.owner.length)} points …`);
-    await new Promise((resolve) => setTimeout(resolve, 30)); // the note appears before the work
+    await new Promise((resolve) => setTimeout(resolve, 30));  // the note appears before the work
     if (this.isClosed) return;
-    this.session = LiveEditor.session ??= await Session.load();
+    const session = LiveEditor.session ??= await Session.load();
     if (this.isClosed) return;
     const begin = performance.now();
     try {
-      this.session.start(this.rest, 2000);
+      session.start(this.rest, 2000);
     } catch (error) {
       note.textContent = 'These points cannot be deformed.';
       throw error;
     }
+    this.session = session;
     this.secondsToStart = (performance.now() - begin) / 1000;
     note.remove();
     this.makeControls();
     this.renderer.afterDraw = () => this.measure();
     this.useDefaultHandles();
+    this.past = [];
+    this.undoButton.disabled = true;
   }
 
   close() {
@@ -113,20 +120,31 @@ class LiveEditor {
 
   makeControls() {
     const {controls} = this;
-    const tools = [['move', 'Move'], ['turn', 'Turn'], ['scale', 'Scale'], ['select', 'New handle']];
+    const tools =
+        [['move', 'Move'], ['turn', 'Turn'], ['scale', 'Scale'], ['select', 'New handle']];
     const buttons = tools.map(([tool, label]) => controls.button(label, () => this.setTool(tool)));
     this.toolButtons = tools.map(([tool], i) => [tool, buttons[i]]);
     controls.buttons('Drag a coloured handle to', ...buttons);
-    this.handleChoice = controls.select('Handle for the keyboard', [], (h) => { this.current = h; });
+    this.handleChoice = controls.select('Handle for the keyboard', [], (h) => {
+      this.current = h;
+    });
     this.undoButton = controls.button('Undo', () => this.undo());
     this.removeButton = controls.button('Remove handle', () => this.removeHandle());
-    controls.buttons('', this.undoButton, controls.button('Reset', () => this.reset()), this.removeButton);
-    this.endSize = controls.slider('Size of the ends', {
-      min: 5, max: 45, step: 1, value: 15, format: (x) => `${x} %`,
-    }, () => this.useEnds());
-    controls.buttons('', controls.button('Hold both ends', () => this.useEnds()),
-                     controls.button('Change the up axis', () => this.turnUp()),
-                     controls.button('Save as PLY', () => this.save()));
+    controls.buttons(
+        '', this.undoButton, controls.button('Reset', () => this.reset()), this.removeButton);
+    this.endSize = controls.slider(
+        'Size of the ends', {
+          min: 5,
+          max: 45,
+          step: 1,
+          value: 15,
+          format: (x) => `${x} %`,
+        },
+        () => this.useEnds());
+    controls.buttons(
+        '', controls.button('Hold both ends', () => this.useEnds()),
+        controls.button('Change the up axis', () => this.turnUp()),
+        controls.button('Save as PLY', () => this.save()));
     this.status = controls.element('output', {id: 'status', className: 'note'});
     controls.row(this.status);
     this.setTool('move');
@@ -169,8 +187,9 @@ class LiveEditor {
     this.layer.update(1, this.colors());
     this.solve(false);
     this.secondsToFactorize = (performance.now() - begin) / 1000;
-    this.handleChoice.replaceChildren(...lists.map((list, h) => this.controls.element(
-      'option', {value: h}, `handle ${h + 1}, ${count(list.length)} points`)));
+    this.handleChoice.replaceChildren(...lists.map(
+        (list, h) => this.controls.element(
+            'option', {value: h}, `handle ${h + 1}, ${count(list.length)} points`)));
     this.current = Math.max(0, lists.length - 1);
     this.handleChoice.value = this.current;
     this.removeButton.disabled = lists.length === 0;
@@ -181,8 +200,9 @@ class LiveEditor {
   useDefaultHandles() {
     const boxes = ((this.cloud.edit || {}).handles || []).map(({select}) => select && select.box);
     if (boxes.length < 2 || !boxes.every(Boolean)) return this.useEnds();
-    const inBox = ([low, high]) => this.indicesWhere((x, y, z) =>
-      [x, y, z].every((value, c) => value >= low[c] && value <= high[c]));
+    const {origin} = this.cloud;
+    const inBox = ([low, high]) => this.indicesWhere(
+        (...p) => p.every((x, c) => x + origin[c] >= low[c] && x + origin[c] <= high[c]));
     return this.setHandles(boxes.map(inBox).filter((list) => list.length));
   }
 
@@ -191,8 +211,8 @@ class LiveEditor {
     const axis = size.indexOf(Math.max(...size)), share = Number(this.endSize.value) / 100;
     const at = (value) => (value - low[axis]) / size[axis];
     this.remember();
-    this.setHandles([(t) => t <= share, (t) => t >= 1 - share].map((isEnd) =>
-      this.indicesWhere((...p) => isEnd(at(p[axis])))));
+    this.setHandles([(t) => t <= share, (t) => t >= 1 - share].map(
+        (isEnd) => this.indicesWhere((...p) => isEnd(at(p[axis])))));
   }
 
   indicesWhere(isInside) {
@@ -212,7 +232,8 @@ class LiveEditor {
       if (at[2] > 0 && at[0] >= x0 && at[0] <= x1 && at[1] >= y0 && at[1] <= y1) indices.push(i);
     }
     if (indices.length === 0)
-      throw new Error('The rectangle contains no points that are free. Draw it around uncoloured points.');
+      throw new Error(
+          'The rectangle contains no points that are free. Draw it around uncoloured points.');
     if (this.handles.length >= mostHandles)
       throw new Error(`There are ${mostHandles} handles, the most that the page shows.`);
     this.remember();
@@ -236,8 +257,11 @@ class LiveEditor {
   // ---- motions
 
   remember() {
-    this.past.push({rest: this.rest, lists: this.handles.map(({indices}) => indices),
-                    motions: this.handles.map(({motion}) => structuredClone(motion))});
+    this.past.push({
+      rest: this.rest,
+      lists: this.handles.map(({indices}) => indices),
+      motions: this.handles.map(({motion}) => structuredClone(motion))
+    });
     if (this.past.length > 50) this.past.shift();
     this.undoButton.disabled = false;
   }
@@ -269,8 +293,9 @@ class LiveEditor {
     const {renderer} = this, {motion, center} = this.handles[h];
     const {right, above, back} = renderer.axes(), at = [0, 0, 0];
     if (this.tool === 'turn') {
-      const turn = isAboutView ? turnAbout(back, -0.01 * x)
-        : productOfTurns(turnAbout(above, 0.01 * x), turnAbout(right, 0.01 * y));
+      const turn = isAboutView ?
+          turnAbout(back, -0.01 * x) :
+          productOfTurns(turnAbout(above, 0.01 * x), turnAbout(right, 0.01 * y));
       const product = productOfTurns(turn, motion.turn), length = Math.hypot(...product);
       motion.turn = product.map((q) => q / length);
     } else if (this.tool === 'scale') {
@@ -310,12 +335,14 @@ class LiveEditor {
   }
 
   showStatus() {
-    const rate = this.frames.length > 1
-      ? (this.frames.length - 1) / (this.frames[this.frames.length - 1] - this.frames[0]) * 1000 : 0;
+    const rate = this.frames.length > 1 ?
+        (this.frames.length - 1) / (this.frames[this.frames.length - 1] - this.frames[0]) * 1000 :
+        0;
     this.frameRate = rate;
-    this.status.value = `${count(this.owner.length)} points, ${count(this.session.numberOfSamples)} ` +
-      `samples. Solved in ${this.solveTime.toFixed(0)} ms` +
-      (rate ? `, ${rate.toFixed(0)} frames per second.` : '.');
+    this.status.value =
+        `${count(this.owner.length)} points, ${count(this.session.numberOfSamples)} ` +
+        `samples. Solved in ${this.solveTime.toFixed(0)} ms` +
+        (rate ? `, ${rate.toFixed(0)} frames per second.` : '.');
   }
 
   // ---- other controls
@@ -330,14 +357,15 @@ class LiveEditor {
     const n = this.owner.length, isFar = origin.some((x) => x !== 0);
     const type = isFar ? 'double' : 'float', bytes = isFar ? 8 : 4;
     const header = new TextEncoder().encode(
-      `ply\nformat binary_little_endian 1.0\nelement vertex ${n}\n` +
-      ['x', 'y', 'z'].map((axis) => `property ${type} ${axis}\n`).join('') + 'end_header\n');
+        `ply\nformat binary_little_endian 1.0\nelement vertex ${n}\n` +
+        ['x', 'y', 'z'].map((axis) => `property ${type} ${axis}\n`).join('') + 'end_header\n');
     const view = new DataView(new ArrayBuffer(3 * n * bytes));
     for (let i = 0; i < 3 * n; ++i)
       view[isFar ? 'setFloat64' : 'setFloat32'](i * bytes, points[i] + origin[i % 3], true);
     const link = this.controls.element('a', {
       href: URL.createObjectURL(new Blob([header, view])),
-      download: `${name.replace(/\.[^.]*$/, '')}_deformed.ply`});
+      download: `${name.replace(/\.[^.]*$/, '')}_deformed.ply`
+    });
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 10000);
   }

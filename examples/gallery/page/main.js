@@ -11,7 +11,9 @@ function showMessage(error) {
   const close = document.createElement('button');
   close.type = 'button';
   close.textContent = 'Close';
-  close.addEventListener('click', () => { $('message').hidden = true; });
+  close.addEventListener('click', () => {
+    $('message').hidden = true;
+  });
   const text = document.createElement('span');
   text.textContent = error.message || String(error);
   $('message').replaceChildren(text, close);
@@ -22,19 +24,19 @@ function showMessage(error) {
 async function attempt(work) {
   try {
     await work();
-  } catch (error) {
-    showMessage(error);
-  }
+  } catch (error) { showMessage(error); }
 }
 
 // ---- views
 
-const liveText = 'Drag the coloured handles. pcs deforms all points in every frame, in this browser.';
-const keysOfViews = 'Drag to turn, scroll to zoom, and drag with the right button to shift. On the ' +
-  'keyboard: arrow keys turn, + and − zoom, 0 shows everything.';
+const liveText =
+    'Drag the coloured handles. pcs deforms all points in every frame, in this browser.';
+const keysOfViews =
+    'Drag to turn, scroll to zoom, and drag with the right button to shift. On the ' +
+    'keyboard: arrow keys turn, + and − zoom, 0 shows everything.';
 const keysOfProbe = ' Enter shows the values at the centre.';
 const keysOfEditor = ' Shift with the arrow keys applies the chosen tool to the handle of the ' +
-  'keyboard, and Ctrl+Z undoes it.';
+    'keyboard, and Ctrl+Z undoes it.';
 
 function start(id) {
   if (editor) editor.close();
@@ -60,7 +62,9 @@ function describe(title, text, keys) {
   canvas.setAttribute('aria-label', title);
 }
 
-const markReady = () => { document.documentElement.dataset.ready = current; };
+const markReady = () => {
+  document.documentElement.dataset.ready = current;
+};
 
 function showView(id) {
   const controls = start(id), view = views[id];
@@ -76,15 +80,20 @@ function showEditor(cloud) {
   const controls = start('live');
   describe('Live editor', liveText, keysOfEditor);
   const model = datasets.find((data) => data.id === 'deformation');
-  cloud ??= model && {positions: decodePoints(model.rest), up: model.up, edit: model.edit, name: model.name};
+  if (!cloud && model) {
+    const {rest, up, edit, name} = model, origin = originOf(rest);
+    cloud = {positions: decodePoints(rest, origin), origin, up, edit, name};
+  }
   return attempt(async () => {
-    if (cloud) {
-      const opened = editor = new LiveEditor(renderer, controls, cloud, showMessage);
-      await opened.open();
-      if (editor !== opened) return;
+    const opened = editor = cloud ? new LiveEditor(renderer, controls, cloud, showMessage) : null;
+    try {
+      if (opened) await opened.open();
+    } finally {
+      if (editor === opened && current === 'live') {
+        addFileButton(controls);
+        markReady();
+      }
     }
-    addFileButton(controls);
-    markReady();
   });
 }
 
@@ -93,8 +102,9 @@ function addFileButton(controls) {
   const input = controls.element('input', {type: 'file', hidden: true});
   input.addEventListener('change', () => attempt(() => openFile(input.files[0])));
   controls.buttons('Your own points', controls.button('Open a file', () => input.click()), input);
-  controls.note('Drop a PLY file or a table of coordinates on the page, or open it here. The points ' +
-                'stay on your computer.');
+  controls.note(
+      'Drop a PLY file or a table of coordinates on the page, or open it here. The points ' +
+      'stay on your computer.');
 }
 
 const show = (id) => id === 'live' ? showEditor() : showView(id);
@@ -106,7 +116,9 @@ function makeTabs() {
     tab.textContent = label;
     tab.setAttribute('role', 'tab');
     tab.setAttribute('aria-controls', 'view');
-    tab.addEventListener('click', () => { location.hash = id; });
+    tab.addEventListener('click', () => {
+      location.hash = id;
+    });
     $('tabs').append(tab);
   }
   $('tabs').addEventListener('keydown', (event) => {
@@ -148,8 +160,8 @@ function initTheme() {
 
 // ---- pointer
 
-const pointers = new Map(); // of the pointers that are down, by id
-let action = null;          // {kind, handle, x, y}: what the first pointer does
+const pointers = new Map();  // of the pointers that are down, by id
+let action = null;           // {kind, handle, x, y}: what the first pointer does
 
 function placeOf(event) {
   const box = canvas.getBoundingClientRect();
@@ -171,8 +183,12 @@ function beginAction(event) {
 
 function showBox(x, y) {
   const [left, top] = [Math.min(x, action.x), Math.min(y, action.y)];
-  Object.assign($('box').style, {left: left + 'px', top: top + 'px',
-                                 width: Math.abs(x - action.x) + 'px', height: Math.abs(y - action.y) + 'px'});
+  Object.assign($('box').style, {
+    left: left + 'px',
+    top: top + 'px',
+    width: Math.abs(x - action.x) + 'px',
+    height: Math.abs(y - action.y) + 'px'
+  });
   $('box').hidden = false;
 }
 
@@ -215,13 +231,16 @@ function initPointer() {
     canvas.classList.remove('busy');
     $('box').hidden = true;
     if (done && done.kind === 'select' && event.type === 'pointerup')
-      attempt(() => editor.selectBox(Math.min(x, done.x), Math.min(y, done.y),
-                                     Math.max(x, done.x), Math.max(y, done.y)));
+      attempt(
+          () => editor.selectBox(
+              Math.min(x, done.x), Math.min(y, done.y), Math.max(x, done.x), Math.max(y, done.y)));
     if (event.pointerType === 'touch') probeSoon(x, y);
   };
   canvas.addEventListener('pointerup', end);
   canvas.addEventListener('pointercancel', end);
-  canvas.addEventListener('pointerleave', () => { $('probe').hidden = true; });
+  canvas.addEventListener('pointerleave', () => {
+    $('probe').hidden = true;
+  });
   canvas.addEventListener('wheel', (event) => {
     event.preventDefault();
     renderer.zoom(Math.exp(Math.max(-60, Math.min(60, event.deltaY)) * 0.003));
@@ -255,7 +274,12 @@ function probe(x, y) {
 
 // ---- keyboard
 
-const arrows = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]};
+const arrows = {
+  ArrowLeft: [-1, 0],
+  ArrowRight: [1, 0],
+  ArrowUp: [0, -1],
+  ArrowDown: [0, 1]
+};
 
 function initKeyboard() {
   canvas.addEventListener('keydown', (event) => {
@@ -274,7 +298,9 @@ function initKeyboard() {
       renderer.fit();
     } else if (event.key === 'Enter') {
       probe(canvas.clientWidth / 2, canvas.clientHeight / 2);
-    } else if (event.key.toLowerCase() === 'z' && (event.ctrlKey || event.metaKey) && editor && editor.session) {
+    } else if (
+        event.key.toLowerCase() === 'z' && (event.ctrlKey || event.metaKey) && editor &&
+        editor.session) {
       attempt(() => editor.undo());
     } else {
       return;
@@ -287,7 +313,8 @@ function initKeyboard() {
 
 async function openFile(file) {
   if (file.size > 1e9)
-    throw new Error(`${file.name} has more than 1 GB, the most that the page reads. Thin the file first.`);
+    throw new Error(
+        `${file.name} has more than 1 GB, the most that the page reads. Thin the file first.`);
   const buffer = await file.arrayBuffer().catch(() => {
     throw new Error(`${file.name} cannot be read. Drop one file, not a folder.`);
   });
@@ -296,7 +323,7 @@ async function openFile(file) {
 }
 
 function initDrop() {
-  let depth = 0; // of dragenter minus dragleave
+  let depth = 0;  // of dragenter minus dragleave
   const hint = (change) => {
     depth = Math.max(0, depth + change);
     $('drop').hidden = depth === 0;

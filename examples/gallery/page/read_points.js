@@ -2,13 +2,25 @@
 // SPDX-License-Identifier: BSL-1.0
 // Reads the positions of points of a PLY file or a table of text. Errors are sentences.
 
-const mostPoints = 4000000; // the editor needs about 325 bytes for each, and has 2 GB
+const mostPoints = 4000000;  // the editor needs about 325 bytes for each, and has 2 GB
 
 const plyTypes = {
-  char: ['Int8', 1], int8: ['Int8', 1], uchar: ['Uint8', 1], uint8: ['Uint8', 1],
-  short: ['Int16', 2], int16: ['Int16', 2], ushort: ['Uint16', 2], uint16: ['Uint16', 2],
-  int: ['Int32', 4], int32: ['Int32', 4], uint: ['Uint32', 4], uint32: ['Uint32', 4],
-  float: ['Float32', 4], float32: ['Float32', 4], double: ['Float64', 8], float64: ['Float64', 8],
+  char: ['Int8', 1],
+  int8: ['Int8', 1],
+  uchar: ['Uint8', 1],
+  uint8: ['Uint8', 1],
+  short: ['Int16', 2],
+  int16: ['Int16', 2],
+  ushort: ['Uint16', 2],
+  uint16: ['Uint16', 2],
+  int: ['Int32', 4],
+  int32: ['Int32', 4],
+  uint: ['Uint32', 4],
+  uint32: ['Uint32', 4],
+  float: ['Float32', 4],
+  float32: ['Float32', 4],
+  double: ['Float64', 8],
+  float64: ['Float64', 8],
 };
 
 /// Collects positions. The first point becomes the origin, because large coordinates would lose
@@ -42,8 +54,9 @@ class PositionList {
 
 function checkCount(n, name) {
   if (n > mostPoints)
-    throw new Error(`${name} has more than ${mostPoints.toLocaleString('en')} points, ` +
-                    'the most that the editor takes. Thin the file first.');
+    throw new Error(
+        `${name} has more than ${mostPoints.toLocaleString('en')} points, ` +
+        'the most that the editor takes. Thin the file first.');
 }
 
 /// Returns {format, elements, start}; `start` is the first byte after the header.
@@ -52,7 +65,7 @@ function readPlyHeader(bytes, name) {
     throw new Error(`${name}: line ${line} of the PLY header: ${what}.`);
   };
   const header = {format: '', elements: [], start: 0};
-  for (let number = 1; ; ++number) {
+  for (let number = 1;; ++number) {
     const end = bytes.indexOf(10, header.start);
     if (end < 0 || end - header.start > 10000)
       throw new Error(`${name}: the PLY header has no line \`end_header\`.`);
@@ -63,7 +76,8 @@ function readPlyHeader(bytes, name) {
     if (words[0] === 'format') {
       header.format = words[1];
     } else if (words[0] === 'element') {
-      if (!/^\d+$/.test(words[2])) fail(number, `expected a number of elements, found '${words[2] || ''}'`);
+      if (!/^\d+$/.test(words[2]))
+        fail(number, `expected a number of elements, found '${words[2] || ''}'`);
       header.elements.push({name: words[1], count: Number(words[2]), properties: []});
     } else if (words[0] === 'property') {
       const types = words[1] === 'list' ? words.slice(2, 4) : words.slice(1, 2);
@@ -74,8 +88,9 @@ function readPlyHeader(bytes, name) {
     }
   }
   if (!['ascii', 'binary_little_endian', 'binary_big_endian'].includes(header.format))
-    throw new Error(`${name}: unknown PLY format '${header.format}'; expected ascii, ` +
-                    'binary_little_endian or binary_big_endian.');
+    throw new Error(
+        `${name}: unknown PLY format '${header.format}'; expected ascii, ` +
+        'binary_little_endian or binary_big_endian.');
   return header;
 }
 
@@ -90,8 +105,9 @@ function readBinaryRows(view, at, element, isLittle, name, take) {
         at += first[1] + (property.isList ? row[k] * second[1] : 0);
       });
     } catch (error) {
-      throw new Error(`${name} ends in row ${i + 1} of ${element.count} of the element ` +
-                      `'${element.name}'; it was probably not copied completely.`);
+      throw new Error(
+          `${name} ends in row ${i + 1} of ${element.count} of the element ` +
+          `'${element.name}'; it was probably not copied completely.`);
     }
     if (take) take(row, i);
   }
@@ -103,7 +119,8 @@ function readPly(bytes, name) {
   const vertices = elements.find((element) => element.name === 'vertex');
   if (!vertices) throw new Error(`${name}: the PLY header has no element 'vertex'.`);
   const [x, y, z] = ['x', 'y', 'z'].map((axis) => {
-    const k = vertices.properties.findIndex((property) => property.name === axis && !property.isList);
+    const k =
+        vertices.properties.findIndex((property) => property.name === axis && !property.isList);
     if (k < 0) throw new Error(`${name}: the vertices have no property '${axis}'.`);
     return k;
   });
@@ -118,8 +135,9 @@ function readPly(bytes, name) {
         for (let i = 0; i < element.count; ++i) {
           const words = (lines[line + i] || '').trim().split(/\s+/);
           if (words.length < element.properties.length)
-            throw new Error(`${name}: point ${i + 1} of ${element.count} has ` +
-                            `${words[0] ? words.length : 0} of ${element.properties.length} numbers.`);
+            throw new Error(
+                `${name}: point ${i + 1} of ${element.count} has ` +
+                `${words[0] ? words.length : 0} of ${element.properties.length} numbers.`);
           take(words.map(Number), i);
         }
       line += element.count;
@@ -128,8 +146,8 @@ function readPly(bytes, name) {
     const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
     let at = start;
     for (const element of elements) {
-      at = readBinaryRows(view, at, element, format === 'binary_little_endian', name,
-                          element === vertices && take);
+      at = readBinaryRows(
+          view, at, element, format === 'binary_little_endian', name, element === vertices && take);
       if (element === vertices) break;
     }
   }
@@ -140,8 +158,9 @@ function readPly(bytes, name) {
 /// first line of names and lines that begin with # or / are skipped.
 function readTable(bytes, name) {
   if (bytes.subarray(0, 1000).includes(0))
-    throw new Error(`${name} is neither a PLY file nor a table of text. ` +
-                    'Programs of pcs convert LAS and other formats to PLY.');
+    throw new Error(
+        `${name} is neither a PLY file nor a table of text. ` +
+        'Programs of pcs convert LAS and other formats to PLY.');
   const list = new PositionList(1000, name);
   let number = 0;
   for (const line of new TextDecoder().decode(bytes).split('\n')) {
@@ -152,8 +171,9 @@ function readTable(bytes, name) {
     const isRow = values.length === 3 && values.every((value) => Number.isFinite(value));
     if (!isRow && list.count === 0 && /^"?[a-z]/i.test(words[0])) continue;
     if (!isRow)
-      throw new Error(`${name}: line ${number}: expected three coordinates, ` +
-                      `found '${line.trim().slice(0, 40)}'.`);
+      throw new Error(
+          `${name}: line ${number}: expected three coordinates, ` +
+          `found '${line.trim().slice(0, 40)}'.`);
     list.add(...values, () => `line ${number}`);
   }
   return list.result();

@@ -8,7 +8,8 @@ const fieldOfView = 40 * Math.PI / 180;
 // The scene is drawn into a texture with depth. A second pass darkens pixels that lie behind their
 // neighbours (eye-dome lighting: C. Boucheny, 2009), because points have no normals.
 const shaders = {
-  points: [`
+  points: [
+    `
     layout(location = 0) in vec3 position;
     layout(location = 1) in vec3 color;
     uniform mat4 view, projection;
@@ -18,14 +19,17 @@ const shaders = {
       gl_Position = projection * (view * vec4(position, 1.0));
       gl_PointSize = clamp(size / gl_Position.w, smallest, 12.0);
       shade = color;
-    }`, `
+    }`,
+    `
     in vec3 shade;
     out vec4 result;
     void main() {
       result = vec4(shade, 1.0);
-    }`],
+    }`
+  ],
   // A segment between two circles: a rectangle that faces the camera, shaded as a cylinder.
-  tubes: [`
+  tubes: [
+    `
     layout(location = 0) in vec4 start;
     layout(location = 1) in vec4 end;
     layout(location = 2) in vec3 color;
@@ -44,14 +48,17 @@ const shaders = {
       if (start == end) radius = 0.0;
       gl_Position = projection * vec4(here + across * radius * side, 1.0);
       shade = color;
-    }`, `
+    }`,
+    `
     in vec3 shade;
     in float across;
     out vec4 result;
     void main() {
       result = vec4(shade * (0.55 + 0.45 * sqrt(max(0.0, 1.0 - across * across))), 1.0);
-    }`],
-  triangles: [`
+    }`
+  ],
+  triangles: [
+    `
     layout(location = 0) in vec3 position;
     uniform mat4 view, projection;
     out vec3 place;
@@ -59,7 +66,8 @@ const shaders = {
       vec4 p = view * vec4(position, 1.0);
       place = p.xyz;
       gl_Position = projection * p;
-    }`, `
+    }`,
+    `
     in vec3 place;
     uniform vec3 color;
     out vec4 result;
@@ -67,11 +75,14 @@ const shaders = {
       vec3 n = normalize(cross(dFdx(place), dFdy(place)));
       float light = abs(dot(n, normalize(vec3(0.3, 0.5, 0.8))));
       result = vec4(color * (0.35 + 0.65 * light), 1.0);
-    }`],
-  lighting: [`
+    }`
+  ],
+  lighting: [
+    `
     void main() {
       gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
-    }`, `
+    }`,
+    `
     uniform sampler2D scene, depths;
     uniform vec3 background;
     uniform vec2 range;
@@ -100,7 +111,8 @@ const shaders = {
       vec3 color = is_empty ? background : texelFetch(scene, at, 0).rgb;
       float light = is_empty || is_hole ? 1.0 : exp(-min(behind * 10.0, 0.9));
       result = vec4(color * light, 1.0);
-    }`],
+    }`
+  ],
 };
 
 class Renderer {
@@ -108,13 +120,22 @@ class Renderer {
     this.canvas = canvas;
     this.gl = canvas.getContext('webgl2', {antialias: false, alpha: false});
     if (!this.gl)
-      throw new Error('This browser does not offer WebGL 2, which the gallery needs. ' +
-                      'Enable hardware acceleration, or use another browser.');
+      throw new Error(
+          'This browser does not offer WebGL 2, which the gallery needs. ' +
+          'Enable hardware acceleration, or use another browser.');
     this.layers = [];
-    this.camera = {target: [0, 0, 0], radius: 1, distance: 4, size: [1, 1, 1], yaw: 0.6, pitch: 0.25, up: 'z'};
+    this.camera = {
+      target: [0, 0, 0],
+      radius: 1,
+      distance: 4,
+      size: [1, 1, 1],
+      yaw: 0.6,
+      pitch: 0.25,
+      up: 'z'
+    };
     this.background = [1, 1, 1];
     this.afterDraw = () => {};
-    this.thinning = 1; // every how many points are drawn
+    this.thinning = 1;  // every how many points are drawn
     this.programs = {};
     for (const [name, [vertex, fragment]] of Object.entries(shaders))
       this.programs[name] = this.link(vertex, fragment);
@@ -126,7 +147,8 @@ class Renderer {
     const gl = this.gl, program = gl.createProgram();
     sources.forEach((source, i) => {
       const shader = gl.createShader(i ? gl.FRAGMENT_SHADER : gl.VERTEX_SHADER);
-      gl.shaderSource(shader, '#version 300 es\nprecision highp float;\nprecision highp int;\n' + source);
+      gl.shaderSource(
+          shader, '#version 300 es\nprecision highp float;\nprecision highp int;\n' + source);
       gl.compileShader(shader);
       gl.attachShader(program, shader);
     });
@@ -175,17 +197,19 @@ class Renderer {
 
   /// Points with three coordinates and three bytes of colour each; `size` in the unit of the scene.
   addPoints(positions, colors, size) {
-    return Object.assign(this.add('points', positions.length / 3,
-                                  [[positions, 3, false, 0], [colors, 3, true, 0]]), {size});
+    return Object.assign(
+        this.add('points', positions.length / 3, [[positions, 3, false, 0], [colors, 3, true, 0]]),
+        {size});
   }
 
   /// Tubes: x, y, z, radius of both ends, and three bytes of colour each.
   addTubes(ends, colors) {
     const gl = this.gl;
-    const layer = this.add('tubes', ends.length / 8,
-                           [[ends, 4, false, 1], [new Float32Array(4), 4, false, 1], [colors, 3, true, 1]]);
+    const layer = this.add(
+        'tubes', ends.length / 8,
+        [[ends, 4, false, 1], [new Float32Array(4), 4, false, 1], [colors, 3, true, 1]]);
     gl.bindVertexArray(layer.array);
-    gl.bindBuffer(gl.ARRAY_BUFFER, layer.buffers[0]); // both ends are in one buffer
+    gl.bindBuffer(gl.ARRAY_BUFFER, layer.buffers[0]);  // both ends are in one buffer
     gl.vertexAttribPointer(0, 4, gl.FLOAT, false, 32, 0);
     gl.vertexAttribPointer(1, 4, gl.FLOAT, false, 32, 16);
     return layer;
@@ -252,7 +276,11 @@ class Renderer {
     const {yaw, pitch, up} = this.camera;
     const [s, c, sp, cp] = [Math.sin(yaw), Math.cos(yaw), Math.sin(pitch), Math.cos(pitch)];
     const turned = (x, y, z) => up === 'y' ? [x, z, -y] : [x, y, z];
-    return {right: turned(c, s, 0), above: turned(-s * sp, c * sp, cp), back: turned(s * cp, -c * cp, sp)};
+    return {
+      right: turned(c, s, 0),
+      above: turned(-s * sp, c * sp, cp),
+      back: turned(s * cp, -c * cp, sp)
+    };
   }
 
   /// Length of a pixel of the page at a distance from the camera.
@@ -264,13 +292,17 @@ class Renderer {
     const {right, above, back} = this.axes(), {target, distance, radius} = this.camera;
     const eye = target.map((t, c) => t + distance * back[c]);
     const dot = (a) => -(a[0] * eye[0] + a[1] * eye[1] + a[2] * eye[2]);
-    const view = [right[0], above[0], back[0], 0, right[1], above[1], back[1], 0,
-                  right[2], above[2], back[2], 0, dot(right), dot(above), dot(back), 1];
+    const view = [
+      right[0], above[0], back[0], 0, right[1], above[1], back[1], 0, right[2], above[2], back[2],
+      0, dot(right), dot(above), dot(back), 1
+    ];
     const near = Math.max(0.005 * radius, distance - 3 * radius), far = distance + 4 * radius;
     const f = 1 / Math.tan(fieldOfView / 2);
     const aspect = this.canvas.width / Math.max(1, this.canvas.height);
-    const projection = [f / aspect, 0, 0, 0, 0, f, 0, 0, 0, 0, (far + near) / (near - far), -1,
-                        0, 0, 2 * far * near / (near - far), 0];
+    const projection = [
+      f / aspect, 0, 0, 0, 0, f, 0, 0, 0, 0, (far + near) / (near - far), -1, 0, 0,
+      2 * far * near / (near - far), 0
+    ];
     return {view, projection, range: [near, far]};
   }
 
@@ -293,7 +325,8 @@ class Renderer {
     let found = -1, least = Infinity;
     for (let i = 0; i < positions.length; i += 3) {
       project(positions[i], positions[i + 1], positions[i + 2], at);
-      if (at[2] > 0 && at[2] < least && Math.abs(at[0] - x) < reach && Math.abs(at[1] - y) < reach) {
+      if (at[2] > 0 && at[2] < least && Math.abs(at[0] - x) < reach &&
+          Math.abs(at[1] - y) < reach) {
         least = at[2];
         found = i / 3;
       }
@@ -306,10 +339,8 @@ class Renderer {
   redraw() {
     this.request ??= requestAnimationFrame(() => {
       try {
-        this.draw(); // changes during the call are drawn by it
-      } finally {
-        this.request = null;
-      }
+        this.draw();  // changes during the call are drawn by it
+      } finally { this.request = null; }
     });
   }
 
@@ -325,23 +356,24 @@ class Renderer {
     for (const texture of this.textures || []) gl.deleteTexture(texture);
     this.scene ??= gl.createFramebuffer();
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.scene);
-    this.textures = [[gl.RGBA8, gl.COLOR_ATTACHMENT0], [gl.DEPTH_COMPONENT24, gl.DEPTH_ATTACHMENT]].map(
-        ([format, attachment], i) => {
-          const texture = gl.createTexture();
-          gl.activeTexture(gl.TEXTURE0 + i);
-          gl.bindTexture(gl.TEXTURE_2D, texture);
-          gl.texStorage2D(gl.TEXTURE_2D, 1, format, width, height);
-          gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
-          gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
-          gl.framebufferTexture2D(gl.FRAMEBUFFER, attachment, gl.TEXTURE_2D, texture, 0);
-          return texture;
-        });
+    this.textures = [
+      [gl.RGBA8, gl.COLOR_ATTACHMENT0], [gl.DEPTH_COMPONENT24, gl.DEPTH_ATTACHMENT]
+    ].map(([format, attachment], i) => {
+      const texture = gl.createTexture();
+      gl.activeTexture(gl.TEXTURE0 + i);
+      gl.bindTexture(gl.TEXTURE_2D, texture);
+      gl.texStorage2D(gl.TEXTURE_2D, 1, format, width, height);
+      gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
+      gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
+      gl.framebufferTexture2D(gl.FRAMEBUFFER, attachment, gl.TEXTURE_2D, texture, 0);
+      return texture;
+    });
   }
 
   draw() {
     this.resize();
     const gl = this.gl, {view, projection, range} = this.matrices(), {width, height} = this.canvas;
-    const scale = height / 2 / Math.tan(fieldOfView / 2); // pixels of a length at distance 1
+    const scale = height / 2 / Math.tan(fieldOfView / 2);  // pixels of a length at distance 1
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.scene);
     gl.viewport(0, 0, width, height);
     gl.clearColor(...this.background, 1);

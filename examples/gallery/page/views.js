@@ -1,13 +1,14 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
 // The views of results. Each `show()` fills the scene and the controls, and returns functions that
-// the page calls: `probe(index)` describes a point, `positions()` are the points that can be probed.
+// the page calls: `probe(index)` describes a point, `positions()` are the points that can be
+// probed.
 
 const count = (n) => n.toLocaleString('en');
 const metres = (x, digits = 2) => x.toFixed(digits) + ' m';
 const millimetres = (x) => (1000 * x).toFixed(1) + ' mm';
 const shareOf = (shown, all, what) =>
-  shown < all ? `${count(shown)} of ${count(all)} ${what}` : `${count(all)} ${what}`;
+    shown < all ? `${count(shown)} of ${count(all)} ${what}` : `${count(all)} ${what}`;
 
 /// Elements of the side panel, each with a label.
 class Controls {
@@ -85,8 +86,9 @@ class Controls {
       name.append(text);
       return this.element('tr', {}, name, ...cells.map((cell) => this.element('td', {}, cell)));
     });
-    this.parent.append(this.element('table', {}, this.element('caption', {}, caption),
-                                    this.element('thead', {}, head), this.element('tbody', {}, ...body)));
+    this.parent.append(this.element(
+        'table', {}, this.element('caption', {}, caption), this.element('thead', {}, head),
+        this.element('tbody', {}, ...body)));
   }
 }
 
@@ -111,12 +113,13 @@ const views = {
     tab: 'Skeleton',
     title: 'A scan and its skeleton',
     text: 'The scan of a tree, coloured by the branches that extract_tree_skeleton found in it. ' +
-          'Point at a branch to see its radius.',
+        'Point at a branch to see its radius.',
     show(data, renderer, controls) {
-      const positions = decodePoints(data.points), cylinderOf = decode(data.cylinder_of_point);
-      const ends = decodePoints(data.cylinders.ends), radius = decodeLengths(data.cylinders.radius);
+      const origin = originOf(data.points), positions = decodePoints(data.points, origin);
+      const cylinderOf = decode(data.cylinder_of_point);
+      const ends = decodePoints(data.cylinders.ends, origin), radius = decodeLengths(data.cylinders.radius);
       const [error, branch, order] =
-        ['radius_error', 'branch', 'order'].map((name) => decode(data.cylinders[name]));
+          ['radius_error', 'branch', 'order'].map((name) => decode(data.cylinders[name]));
       const none = radius.length;
       const tubes = new Float32Array(8 * none);
       for (let i = 0; i < none; ++i)
@@ -124,17 +127,20 @@ const views = {
           tubes.set(ends.subarray(6 * i + 3 * k, 6 * i + 3 * k + 3), 8 * i + 4 * k);
           tubes[8 * i + 4 * k + 3] = radius[i];
         }
-      const schemes = [(i) => colorOfIndex(branch[i]), (i) => colorOfOrder(order[i]),
-                       (i) => colorOfFraction(1 - Math.log(radius[i] / 0.002) / Math.log(100))];
+      const schemes = [
+        (i) => colorOfIndex(branch[i]), (i) => colorOfOrder(order[i]),
+        (i) => colorOfFraction(1 - Math.log(radius[i] / 0.002) / Math.log(100))
+      ];
       const ofPoint = (scheme) => (p) => cylinderOf[p] === none ? grey : scheme(cylinderOf[p]);
       renderer.frame(...innerBoundsOf(positions), data.up);
-      const points = renderer.addPoints(positions, colorsOf(positions.length / 3, ofPoint(schemes[0])), 0.012);
+      const points =
+          renderer.addPoints(positions, colorsOf(positions.length / 3, ofPoint(schemes[0])), 0.012);
       const skeleton = renderer.addTubes(tubes, colorsOf(none, schemes[0]));
       skeleton.visible = false;
       const layers = [['Points', points], ['Skeleton, with radii', skeleton]];
       if (data.mesh) {
-        const mesh = renderer.addTriangles(decodePoints(data.mesh.points), decode(data.mesh.corners),
-                                           [0.66, 0.52, 0.39]);
+        const mesh = renderer.addTriangles(
+            decodePoints(data.mesh.points, origin), decode(data.mesh.corners), [0.66, 0.52, 0.39]);
         mesh.visible = false;
         layers.push(['Closed surface', mesh]);
       }
@@ -149,23 +155,27 @@ const views = {
       });
       const {report} = data;
       if (report)
-        controls.table('The tree', ['Order', 'Branches', 'Length'],
-                       [['all', count(report.total.branches), metres(report.total.length, 1)],
-                        ...report.by_order.map((row, k) => [
-                          [String(k), colorOfOrder(k)], count(row.branches), metres(row.length, 1)])]);
+        controls.table('The tree', ['Order', 'Branches', 'Length'], [
+          ['all', count(report.total.branches), metres(report.total.length, 1)],
+          ...report.by_order.map(
+              (row,
+               k) => [[String(k), colorOfOrder(k)], count(row.branches), metres(row.length, 1)])
+        ]);
       if (report)
-        controls.note(`Height ${metres(report.height)}, diameter at breast height ` +
-                      `${metres(report.diameter_at_breast_height, 3)}, wood ` +
-                      `${(1000 * report.total.volume).toFixed(0)} litres.`);
-      controls.note(shareOf(positions.length / 3, data.number_in_file, 'points') +
-                    ' are shown. Grey points belong to no branch.');
+        controls.note(
+            `Height ${metres(report.height)}, diameter at breast height ` +
+            `${metres(report.diameter_at_breast_height, 3)}, wood ` +
+            `${(1000 * report.total.volume).toFixed(0)} litres.`);
+      controls.note(
+          shareOf(positions.length / 3, data.number_in_file, 'points') +
+          ' are shown. Grey points belong to no branch.');
       return {
         positions: () => positions,
         probe(p) {
           const i = cylinderOf[p];
           if (i === none) return 'not part of a branch';
           return `branch ${branch[i] + 1}, order ${order[i]}\nradius ${millimetres(radius[i])}\n` +
-                 `standard error ${error[i] > 0 ? millimetres(error[i]) : 'unknown'}`;
+              `standard error ${error[i] > 0 ? millimetres(error[i]) : 'unknown'}`;
         },
       };
     },
@@ -174,30 +184,36 @@ const views = {
   morph: {
     tab: 'Geodesic',
     title: 'Between two trees',
-    text: 'Two scanned trees, and the trees on the geodesic between them. orl_geodesic matches the ' +
-          'branches and the points of both.',
+    text:
+        'Two scanned trees, and the trees on the geodesic between them. orl_geodesic matches the ' +
+        'branches and the points of both.',
     show(data, renderer, controls) {
-      const frames = data.frames.map(decodePoints), {lambdas} = data;
+      const origin = originOf(data.frames[0]), {lambdas} = data;
+      const frames = data.frames.map((frame) => decodePoints(frame, origin));
       const positions = new Float32Array(frames[0]);
       const [low, high] = innerBoundsOf(frames[0]);
       renderer.frame(low, high, data.up);
-      const colorAt = (frame) => colorsOf(frame.length / 3, (i) =>
-        colorOfFraction((frame[3 * i + 2] - low[2]) / (high[2] - low[2])));
+      const colorAt = (frame) => colorsOf(
+          frame.length / 3,
+          (i) => colorOfFraction((frame[3 * i + 2] - low[2]) / (high[2] - low[2])));
       const points = renderer.addPoints(positions, colorAt(frames[0]), 0.016);
       const last = lambdas.length - 1;
-      controls.slider('Position λ on the geodesic', {min: 0, max: 1, step: 0.01, value: 0,
-                                                     format: (x) => x.toFixed(2)}, (lambda) => {
-        const at = Math.max(lambdas[0], Math.min(lambdas[last], lambda));
-        const k = Math.max(0, Math.min(last - 1, lambdas.findIndex((l) => l > at) - 1));
-        const i = at >= lambdas[last] ? last - 1 : k;
-        const t = (at - lambdas[i]) / (lambdas[i + 1] - lambdas[i]);
-        points.update(0, mix(frames[i], frames[i + 1], t, positions));
-      });
-      controls.note('At 0 the tree is the first one, at 1 the second one. Branches that only one of ' +
-                    'them has grow out of their parent, or shrink into it. Colours follow the height ' +
-                    'of the points in the first tree.');
-      controls.note(`${lambdas.length} trees were computed; the page interpolates between them. ` +
-                    shareOf(positions.length / 3, data.number_in_file, 'points') + ' are shown.');
+      controls.slider(
+          'Position λ on the geodesic',
+          {min: 0, max: 1, step: 0.01, value: 0, format: (x) => x.toFixed(2)}, (lambda) => {
+            const at = Math.max(lambdas[0], Math.min(lambdas[last], lambda));
+            const k = Math.max(0, Math.min(last - 1, lambdas.findIndex((l) => l > at) - 1));
+            const i = at >= lambdas[last] ? last - 1 : k;
+            const t = (at - lambdas[i]) / (lambdas[i + 1] - lambdas[i]);
+            points.update(0, mix(frames[i], frames[i + 1], t, positions));
+          });
+      controls.note(
+          'At 0 the tree is the first one, at 1 the second one. Branches that only one of ' +
+          'them has grow out of their parent, or shrink into it. Colours follow the height ' +
+          'of the points in the first tree.');
+      controls.note(
+          `${lambdas.length} trees were computed; the page interpolates between them. ` +
+          shareOf(positions.length / 3, data.number_in_file, 'points') + ' are shown.');
       return {};
     },
   },
@@ -205,15 +221,18 @@ const views = {
   family: {
     tab: 'Family',
     title: 'The space of a family',
-    text: 'A family of trees has a mean and modes of variation. The sliders walk through the space of ' +
-          'the first two modes.',
+    text:
+        'A family of trees has a mean and modes of variation. The sliders walk through the ' +
+        'space of the first two modes.',
     show(data, renderer, controls) {
       const n = data.nodes_of_branch, order = decode(data.order), {side} = data;
-      const grid = data.grid.map(decodePoints), samples = data.samples.map(decodePoints);
+      const origin = originOf(data.grid[0]), decodeTree = (tree) => decodePoints(tree, origin);
+      const grid = data.grid.map(decodeTree), samples = data.samples.map(decodeTree);
       const allRadii = decodeLengths(data.radius), m = order.length * n;
       const radiiOf = (tree) => allRadii.subarray(tree * m, (tree + 1) * m);
       const nodes = new Float32Array(3 * m), radii = new Float32Array(m);
-      const colors = colorsOf(order.length * (n - 1), (i) => colorOfOrder(order[Math.floor(i / (n - 1))]));
+      const colors =
+          colorsOf(order.length * (n - 1), (i) => colorOfOrder(order[Math.floor(i / (n - 1))]));
       const [low, high] = boundsOf(grid[(side * side - 1) / 2]);
       const width = 1.15 * Math.max(high[0] - low[0], high[1] - low[1]);
       const score = [0, 0];
@@ -234,32 +253,49 @@ const views = {
       const walked = renderer.addTubes(walk(), colors);
       const row = samples.map((tree, k) => {
         const place = [(k % 3 - 1) * width, (k < 3 ? 0.5 : -0.5) * width, 0];
-        const layer = renderer.addTubes(tubesOfBranches(tree, radiiOf(grid.length + k), n, place), colors);
+        const layer =
+            renderer.addTubes(tubesOfBranches(tree, radiiOf(grid.length + k), n, place), colors);
         layer.visible = false;
         return layer;
       });
       const frame = (isRow) => renderer.frame(
-        isRow ? [-1.5 * width, -width, low[2]] : low, isRow ? [1.5 * width, width, high[2]] : high, data.up);
+          isRow ? [-1.5 * width, -width, low[2]] : low,
+          isRow ? [1.5 * width, width, high[2]] : high, data.up);
       frame(false);
-      const sliders = data.shares.slice(0, 2).map((share, k) =>
-        controls.slider(`Mode ${k + 1}, ${Math.round(100 * share)} % of the variance`, {
-          min: -2, max: 2, step: 0.05, value: 0, format: (x) => `${x.toFixed(2)} sd`,
-        }, (value) => {
-          score[k] = value;
-          walked.update(0, walk());
-        }));
-      controls.select('Shown', ['the tree of these scores', `${samples.length} random trees`], (k) => {
-        walked.visible = k === 0;
-        row.forEach((layer) => { layer.visible = k === 1; });
-        sliders.forEach((slider) => { slider.disabled = k === 1; });
-        frame(k === 1);
-      });
-      controls.note('At 0 in both, the tree is the mean. A score of 1 is one standard deviation (sd).');
-      controls.note(`The family has ${data.trees} trees, and ${count(order.length)} branches in all. ` +
-                    `${side * side} trees were computed on a grid; the page interpolates between them.`);
+      const sliders = data.shares.slice(0, 2).map(
+          (share, k) => controls.slider(
+              `Mode ${k + 1}, ${Math.round(100 * share)} % of the variance`, {
+                min: -2,
+                max: 2,
+                step: 0.05,
+                value: 0,
+                format: (x) => `${x.toFixed(2)} sd`,
+              },
+              (value) => {
+                score[k] = value;
+                walked.update(0, walk());
+              }));
+      controls.select(
+          'Shown', ['the tree of these scores', `${samples.length} random trees`], (k) => {
+            walked.visible = k === 0;
+            row.forEach((layer) => {
+              layer.visible = k === 1;
+            });
+            sliders.forEach((slider) => {
+              slider.disabled = k === 1;
+            });
+            frame(k === 1);
+          });
+      controls.note(
+          'At 0 in both, the tree is the mean. A score of 1 is one standard deviation (sd).');
+      controls.note(
+          `The family has ${data.trees} trees, and ${count(order.length)} branches in all. ` +
+          `${side * side} trees were computed on a grid; the page interpolates between them.`);
       const orders = [...new Set(order)].sort();
-      controls.table('Colours', ['Order', 'Branches'], orders.map((k) => [
-        [String(k), colorOfOrder(k)], count(order.filter((o) => o === k).length)]));
+      controls.table(
+          'Colours', ['Order', 'Branches'],
+          orders.map(
+              (k) => [[String(k), colorOfOrder(k)], count(order.filter((o) => o === k).length)]));
       return {};
     },
   },
@@ -267,31 +303,39 @@ const views = {
   stand: {
     tab: 'Stand',
     title: 'A stand and its trees',
-    text: 'The scan of a stand, coloured by the trees that segment_trees found in it. Point at a tree ' +
-          'to see its size.',
+    text:
+        'The scan of a stand, coloured by the trees that segment_trees found in it. Point at a ' +
+        'tree to see its size.',
     show(data, renderer, controls) {
-      const positions = decodePoints(data.points), tree = decode(data.tree), none = data.number_of_trees;
+      const positions = decodePoints(data.points, originOf(data.points)), tree = decode(data.tree),
+            none = data.number_of_trees;
       renderer.frame(...innerBoundsOf(positions), data.up);
       const colors = colorsOf(tree.length, (i) => tree[i] === none ? grey : colorOfIndex(tree[i]));
       const kept = tree.filter((t) => t !== none).length;
       const all = renderer.addPoints(positions, colors, 0.02);
       const trees = (data.report && data.report.trees) || [];
       controls.checkbox('Ground and other points', true, (isChecked) => {
-        all.count = isChecked ? tree.length : kept; // points of trees come first
+        all.count = isChecked ? tree.length : kept;  // points of trees come first
         renderer.redraw();
       });
-      controls.table('Trees', ['', 'Height', 'Diameter'], trees.map((t) => [
-        [`tree ${t.tree + 1}`, colorOfIndex(t.tree)], metres(t.height, 1),
-        metres(t.diameter_at_breast_height, 3)]));
-      controls.note('Diameters are those at breast height. ' +
-                    shareOf(positions.length / 3, data.number_in_file, 'points') + ' are shown.');
+      controls.table(
+          'Trees', ['', 'Height', 'Diameter'],
+          trees.map(
+              (t) => [
+                  [`tree ${t.tree + 1}`, colorOfIndex(t.tree)], metres(t.height, 1),
+                  metres(t.diameter_at_breast_height, 3)]));
+      controls.note(
+          'Diameters are those at breast height. ' +
+          shareOf(positions.length / 3, data.number_in_file, 'points') + ' are shown.');
       return {
         positions: () => positions.subarray(0, 3 * all.count),
         probe(p) {
           if (tree[p] === none) return 'not part of a tree';
           const t = trees[tree[p]];
-          return `tree ${tree[p] + 1}` + (t ? `\nheight ${metres(t.height, 1)}\ndiameter ` +
-            `${metres(t.diameter_at_breast_height, 3)}` : '');
+          return `tree ${tree[p] + 1}` +
+              (t ? `\nheight ${metres(t.height, 1)}\ndiameter ` +
+                       `${metres(t.diameter_at_breast_height, 3)}` :
+                   '');
         },
       };
     },
@@ -300,10 +344,12 @@ const views = {
   deformation: {
     tab: 'Deformation',
     title: 'Before and after a deformation',
-    text: 'deform_point_set moved one part of this scan and held another. All other points followed as ' +
-          'rigidly as possible.',
+    text:
+        'deform_point_set moved one part of this scan and held another. All other points ' +
+        'followed as rigidly as possible.',
     show(data, renderer, controls) {
-      const rest = decodePoints(data.rest), deformed = decodePoints(data.deformed);
+      const origin = originOf(data.rest), rest = decodePoints(data.rest, origin);
+      const deformed = decodePoints(data.deformed, origin);
       const positions = new Float32Array(deformed), moved = new Float32Array(rest.length / 3);
       let most = 1e-30;
       for (let i = 0; i < moved.length; ++i) {
@@ -311,21 +357,30 @@ const views = {
         most = Math.max(most, moved[i]);
       }
       const [a, b] = [boundsOf(rest), boundsOf(deformed)];
-      renderer.frame(a[0].map((x, c) => Math.min(x, b[0][c])), a[1].map((x, c) => Math.max(x, b[1][c])),
-                     data.up);
-      const size = 4.8 * renderer.camera.radius / Math.sqrt(moved.length);
-      const points = renderer.addPoints(positions, colorsOf(moved.length, (i) =>
-        colorOfFraction(moved[i] / most)), size);
-      controls.slider('From rest to deformed', {
-        min: 0, max: 1, step: 0.01, value: 1, format: (x) => `${Math.round(100 * x)} %`,
-      }, (t) => points.update(0, mix(rest, deformed, t, positions)));
+      renderer.frame(
+          a[0].map((x, c) => Math.min(x, b[0][c])), a[1].map((x, c) => Math.max(x, b[1][c])),
+          data.up);
+      const size = sizeOfPoints(rest, renderer.camera.radius);
+      const points = renderer.addPoints(
+          positions, colorsOf(moved.length, (i) => colorOfFraction(moved[i] / most)), size);
+      controls.slider(
+          'From rest to deformed', {
+            min: 0,
+            max: 1,
+            step: 0.01,
+            value: 1,
+            format: (x) => `${Math.round(100 * x)} %`,
+          },
+          (t) => points.update(0, mix(rest, deformed, t, positions)));
       controls.note('Colours show how far a point moved: brown points hardly, yellow points most.');
-      controls.note('Between the ends, the page moves points on straight lines. The live editor ' +
-                    'computes the shapes in between. ' +
-                    shareOf(moved.length, data.number_in_file, 'points') + ' are shown.');
+      controls.note(
+          'Between the ends, the page moves points on straight lines. The live editor ' +
+          'computes the shapes in between. ' +
+          shareOf(moved.length, data.number_in_file, 'points') + ' are shown.');
       return {
         positions: () => positions,
-        probe: (i) => `moved by ${(100 * moved[i] / (2 * renderer.camera.radius)).toFixed(1)} % of the size`,
+        probe: (i) =>
+            `moved by ${(100 * moved[i] / (2 * renderer.camera.radius)).toFixed(1)} % of the size`,
       };
     },
   },
