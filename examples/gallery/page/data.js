@@ -26,7 +26,8 @@ function originOf({scale, offset}) {
 function decodePoints(description, origin = [0, 0, 0]) {
   const numbers = decode(description), result = new Float32Array(numbers.length);
   const {scale, offset} = description;
-  for (let i = 0; i < numbers.length; ++i) result[i] = offset[i % 3] - origin[i % 3] + scale * numbers[i];
+  const shift = offset.map((x, c) => x - origin[c]);
+  for (let i = 0; i < numbers.length; ++i) result[i] = shift[i % 3] + scale * numbers[i];
   return result;
 }
 
@@ -58,8 +59,8 @@ function innerBoundsOf(positions) {
   return [low, high];
 }
 
-/// Estimates the distance between neighbours of a surface of points: the size of cells that hold two
-/// points on average, for a subset, by bisection.
+/// Estimates the distance between neighbours of a surface of points: the size of cells that hold
+/// two points on average, for a subset, by bisection.
 function spacingOf(positions) {
   const n = positions.length / 3, step = Math.max(1, Math.floor(n / 30000));
   const [low, high] = innerBoundsOf(positions);
@@ -113,9 +114,9 @@ function colorOfFraction(t) {
   return stops[k].map((x, c) => Math.round(x + (at - k) * (stops[k + 1][c] - x)));
 }
 
-/// Returns three bytes for each of `n` elements.
+/// Returns four bytes for each of `n` elements, as graphics drivers expect.
 function colorsOf(n, colorOf) {
-  const result = new Uint8Array(3 * n);
-  for (let i = 0; i < n; ++i) result.set(colorOf(i), 3 * i);
+  const result = new Uint8Array(4 * n);
+  for (let i = 0; i < n; ++i) result.set(colorOf(i), 4 * i);
   return result;
 }

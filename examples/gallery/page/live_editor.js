@@ -163,7 +163,7 @@ class LiveEditor {
     const colors = colorsOf(this.owner.length, () => restColor);
     this.handles.forEach(({indices}, h) => {
       const color = colorOfHandle(h);
-      for (const i of indices) colors.set(color, 3 * i);
+      for (const i of indices) colors.set(color, 4 * i);
     });
     return colors;
   }

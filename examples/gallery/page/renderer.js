@@ -86,7 +86,7 @@ const shaders = {
     uniform sampler2D scene, depths;
     uniform vec3 background;
     uniform vec2 range;
-    uniform int reach;
+    uniform int reach, skipped; // of the neighbours
     out vec4 result;
     float depth(ivec2 at) {
       return texelFetch(depths, clamp(at, ivec2(0), textureSize(depths, 0) - 1), 0).r;
@@ -98,18 +98,18 @@ const shaders = {
       float a = 1.0 / range.x, b = 1.0 / range.x - 1.0 / range.y;
       float least = depth(at), own = 1.0 / (a - b * least), behind = 0.0;
       int nearer = 0;
-      for (int k = 0; k < 9; ++k) {
+      for (int k = 0; k < 9; k += skipped) {
         ivec2 other = at + reach * ivec2(k % 3 - 1, k / 3 - 1);
         float d = depth(other), step = max(0.0, own * (a - b * d) - 1.0);
         behind += step;
         nearer += step > 0.01 ? 1 : 0;
         if (d < least) { least = d; nearest = other; }
       }
-      bool is_hole = nearer > 5;
+      bool is_hole = nearer * skipped > 5;
       if (is_hole) at = nearest;
       bool is_empty = texelFetch(depths, at, 0).r == 1.0;
       vec3 color = is_empty ? background : texelFetch(scene, at, 0).rgb;
-      float light = is_empty || is_hole ? 1.0 : exp(-min(behind * 10.0, 0.9));
+      float light = is_empty || is_hole ? 1.0 : exp(-min(behind * 10.0 * float(skipped), 0.9));
       result = vec4(color * light, 1.0);
     }`
   ],
@@ -195,19 +195,19 @@ class Renderer {
     return layer;
   }
 
-  /// Points with three coordinates and three bytes of colour each; `size` in the unit of the scene.
+  /// Points with three coordinates and four bytes of colour each; `size` in the unit of the scene.
   addPoints(positions, colors, size) {
     return Object.assign(
-        this.add('points', positions.length / 3, [[positions, 3, false, 0], [colors, 3, true, 0]]),
+        this.add('points', positions.length / 3, [[positions, 3, false, 0], [colors, 4, true, 0]]),
         {size});
   }
 
-  /// Tubes: x, y, z, radius of both ends, and three bytes of colour each.
+  /// Tubes: x, y, z, radius of both ends, and four bytes of colour each.
   addTubes(ends, colors) {
     const gl = this.gl;
     const layer = this.add(
         'tubes', ends.length / 8,
-        [[ends, 4, false, 1], [new Float32Array(4), 4, false, 1], [colors, 3, true, 1]]);
+        [[ends, 4, false, 1], [new Float32Array(4), 4, false, 1], [colors, 4, true, 1]]);
     gl.bindVertexArray(layer.array);
     gl.bindBuffer(gl.ARRAY_BUFFER, layer.buffers[0]);  // both ends are in one buffer
     gl.vertexAttribPointer(0, 4, gl.FLOAT, false, 32, 0);
@@ -385,12 +385,12 @@ class Renderer {
       gl.uniformMatrix4fv(program.at('projection'), false, projection);
       gl.bindVertexArray(layer.array);
       if (layer.kind === 'points') {
-        const n = this.thinning, larger = Math.sqrt(n);
-        gl.uniform1f(program.at('size'), larger * layer.size * scale);
-        gl.uniform1f(program.at('smallest'), larger * 1.5 * this.ratio);
-        [[gl.FLOAT, 12], [gl.UNSIGNED_BYTE, 3]].forEach(([type, bytes], i) => {
+        const n = this.thinning;
+        gl.uniform1f(program.at('size'), layer.size * scale);
+        gl.uniform1f(program.at('smallest'), 1.5 * this.ratio);
+        [[gl.FLOAT, 12], [gl.UNSIGNED_BYTE, 4]].forEach(([type, bytes], i) => {
           gl.bindBuffer(gl.ARRAY_BUFFER, layer.buffers[i]);
-          gl.vertexAttribPointer(i, 3, type, i === 1, n * bytes, 0);
+          gl.vertexAttribPointer(i, i ? 4 : 3, type, i === 1, n * bytes, 0);
         });
         gl.drawArrays(gl.POINTS, 0, Math.floor(layer.count / n));
       } else if (layer.kind === 'tubes') {
@@ -410,6 +410,7 @@ class Renderer {
     gl.uniform3fv(program.at('background'), this.background);
     gl.uniform2fv(program.at('range'), range);
     gl.uniform1i(program.at('reach'), Math.max(1, Math.round(this.ratio)));
+    gl.uniform1i(program.at('skipped'), this.thinning > 2 ? 2 : 1);
     gl.drawArrays(gl.TRIANGLES, 0, 3);
     this.adaptThinning();
     this.afterDraw();
@@ -421,7 +422,7 @@ class Renderer {
     this.lastDraw = now;
     const isMoving = interval < 1000 && !this.isRefining;
     this.slow = isMoving && interval > 45 ? (this.slow || 0) + 1 : 0;
-    if (this.slow > 2 && this.thinning < 4) {
+    if (this.slow > 2 && this.thinning < 8) {
       this.thinning *= 2;
       this.slow = 0;
     }

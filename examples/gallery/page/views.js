@@ -117,7 +117,8 @@ const views = {
     show(data, renderer, controls) {
       const origin = originOf(data.points), positions = decodePoints(data.points, origin);
       const cylinderOf = decode(data.cylinder_of_point);
-      const ends = decodePoints(data.cylinders.ends, origin), radius = decodeLengths(data.cylinders.radius);
+      const ends = decodePoints(data.cylinders.ends, origin);
+      const radius = decodeLengths(data.cylinders.radius);
       const [error, branch, order] =
           ['radius_error', 'branch', 'order'].map((name) => decode(data.cylinders[name]));
       const none = radius.length;
