@@ -295,6 +295,17 @@ test('files that are dropped are read', async () => {
   noErrors();
 });
 
+test('the tabs lead back from a dropped file', async () => {
+  await open(ids[0]);
+  assert.equal(await dropFile('three.xyz', '0 0 0\n1 0 0\n0 1 2\n'), '');
+  for (const id of [ids[0], 'live']) {
+    await browser.evaluate(`document.documentElement.removeAttribute('data-ready');
+      $('tab-${id}').click()`);
+    await until(`document.documentElement.dataset.ready === '${id}'`, id);
+  }
+  noErrors();
+});
+
 test('a bad file gives a sentence, and the page goes on', async () => {
   await open('live');
   const before = await browser.evaluate('editor.owner.length');

@@ -146,6 +146,7 @@ class LiveEditor {
         controls.button('Change the up axis', () => this.turnUp()),
         controls.button('Save as PLY', () => this.save()));
     this.status = controls.element('output', {id: 'status', className: 'note'});
+    this.status.setAttribute('aria-live', 'off');  // changes in every frame
     controls.row(this.status);
     this.setTool('move');
   }

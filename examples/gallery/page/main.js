@@ -117,7 +117,8 @@ function makeTabs() {
     tab.setAttribute('role', 'tab');
     tab.setAttribute('aria-controls', 'view');
     tab.addEventListener('click', () => {
-      location.hash = id;
+      if (location.hash === '#' + id) show(id);
+      else location.hash = id;
     });
     $('tabs').append(tab);
   }
@@ -319,6 +320,7 @@ async function openFile(file) {
     throw new Error(`${file.name} cannot be read. Drop one file, not a folder.`);
   });
   const cloud = readPoints(buffer, file.name);
+  history.replaceState(null, '', '#live');
   await showEditor({...cloud, up: 'z'});
 }
 
