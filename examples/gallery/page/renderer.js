@@ -246,7 +246,7 @@ class Renderer {
     const {right, above} = this.axes(), half = Math.tan(fieldOfView / 2);
     const extent = (axis) => axis.reduce((sum, a, c) => sum + Math.abs(a) * camera.size[c] / 2, 0);
     const wide = extent(right) / Math.max(0.1, width / Math.max(1, height));
-    camera.distance = 1.08 * Math.max(wide, extent(above)) / half + 0.3 * camera.radius;
+    camera.distance = 1.08 * Math.max(wide, extent(above)) / half + 0.42 * camera.radius;
     this.redraw();
   }
 

@@ -373,6 +373,8 @@ const views = {
             format: (x) => `${Math.round(100 * x)} %`,
           },
           (t) => points.update(0, mix(rest, deformed, t, positions)));
+      if (/^(dragon|armadillo)$/.test(data.name))
+        controls.note('Model: Stanford 3D Scanning Repository.');
       controls.note('Colours show how far a point moved: brown points hardly, yellow points most.');
       controls.note(
           'Between the ends, the page moves points on straight lines. The live editor ' +
