@@ -80,7 +80,7 @@ function spacingOf(positions) {
 
 /// The size at which points of a surface are drawn: without gaps, unless they are far apart.
 function sizeOfPoints(positions, radius) {
-  return Math.min(2.7 * spacingOf(positions), radius / 130);
+  return Math.min(3.4 * spacingOf(positions), radius / 110);
 }
 
 /// Sets `result` to `(1 - t) a + t b`.
