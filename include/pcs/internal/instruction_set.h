@@ -11,6 +11,8 @@
     !defined(PCS_NO_RUNTIME_DISPATCH)
 #define PCS_HAS_RUNTIME_DISPATCH 1
 #define PCS_TARGET_AVX2 __attribute__((target("avx2,fma")))
+// For kernels without explicit fusion: compilers would fuse multiply-adds if they could.
+#define PCS_TARGET_AVX2_UNFUSED __attribute__((target("avx2")))
 #define PCS_ALWAYS_INLINE inline __attribute__((always_inline))
 // Clang needs the instruction set only at functions with assembly.
 #if defined(__clang__)

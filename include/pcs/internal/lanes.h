@@ -24,6 +24,8 @@ namespace internal {
 using Double2 = double __attribute__((vector_size(16))); // on every machine
 using Double4 = double __attribute__((vector_size(32)));
 using Double8 = double __attribute__((vector_size(64)));
+using Float4 = float __attribute__((vector_size(16)));
+using Float8 = float __attribute__((vector_size(32)));
 /// Eight integers without alignment.
 using Uint16x8 = std::uint16_t __attribute__((vector_size(16), aligned(2), may_alias));
 
@@ -110,6 +112,8 @@ struct Array_lanes
 using Double2 = Array_lanes<double, 2>;
 using Double4 = Array_lanes<double, 4>;
 using Double8 = Array_lanes<double, 8>;
+using Float4 = Array_lanes<float, 4>;
+using Float8 = Array_lanes<float, 8>;
 
 constexpr std::uint64_t reciprocal_root_bits = 0x5fe6eb50c7b537a9;
 
@@ -143,6 +147,19 @@ void select_less(const Array_lanes<T, N>& a,
 }
 
 #endif
+
+/// Returns y, z, x, w of the lanes x, y, z, w.
+PCS_ALWAYS_INLINE Float4 rotated(const Float4& v)
+{
+#if defined(__clang__) && !defined(PCS_NO_VECTOR_EXTENSIONS)
+  return __builtin_shufflevector(v, v, 1, 2, 0, 3);
+#elif defined(__GNUC__) && !defined(PCS_NO_VECTOR_EXTENSIONS)
+  using Index = std::int32_t __attribute__((vector_size(16)));
+  return __builtin_shuffle(v, Index{1, 2, 0, 3});
+#else
+  return {{v[1], v[2], v[0], v[3]}};
+#endif
+}
 
 /// Unaligned loads and stores.
 template <class Lanes, class T>

@@ -7,7 +7,8 @@
 
 #include <pcs/internal/compress_rows.h>
 #include <pcs/internal/parallel.h>
-#include <pcs/neighborhood/Nearest_neighbors.h>
+#include <pcs/neighborhood/Neighbor_lists.h>
+#include <pcs/neighborhood/spatial_order.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -51,63 +52,7 @@ inline Proximity_graph graph_from_edges(std::size_t n,
   return graph;
 }
 
-/// Neighbours are added to a row if their distance is at most this factor times that of the k-th
-/// neighbour. On a regular grid, exactly k neighbours would be an arbitrary, asymmetric selection
-/// among equal distances.
-constexpr double distance_tie_factor = 1.01;
-/// The largest number of neighbours added by `distance_tie_factor`.
-constexpr std::size_t maximal_number_of_ties = 4;
-/// The largest `k`, because links in only one direction are marked in 64 bits.
-constexpr std::size_t maximal_number_of_neighbors = 64 - maximal_number_of_ties;
-
 namespace internal {
-
-/// The nearest neighbours of each point in rows of the same width, nearest first.
-struct Neighbor_lists
-{
-  std::size_t width = 0;
-  std::vector<std::uint32_t> neighbor;
-  std::vector<std::uint8_t> length; ///< number of neighbours in each row
-
-  std::uint32_t at(std::size_t i, std::size_t b) const { return neighbor[i * width + b]; }
-  bool holds(std::size_t i, std::size_t j) const
-  {
-    const auto* row = neighbor.data() + i * width;
-    return std::find(row, row + length[i], static_cast<std::uint32_t>(j)) != row + length[i];
-  }
-};
-
-/// Returns the `k` nearest neighbours of each point, ties included.
-template <class ConcurrencyTag>
-Neighbor_lists find_neighbor_lists(const std::vector<Vec3>& points, std::size_t k)
-{
-  const std::size_t n = points.size();
-  const std::size_t width = std::min(k + maximal_number_of_ties, n > 0 ? n - 1 : 0);
-  Neighbor_lists lists{width,
-                       std::vector<std::uint32_t>(n * width),
-                       std::vector<std::uint8_t>(n, 0)};
-  const Nearest_neighbors nearest(points);
-  pcs::internal::for_each_block<ConcurrencyTag>(n, 512, [&](std::size_t begin, std::size_t end) {
-    std::vector<Nearest_neighbors::Neighbor> found;
-    for (std::size_t i = begin; i < end; ++i) {
-      nearest(points[i], width + 1, found);
-      found.erase(
-          std::remove_if(found.begin(), found.end(), [i](const auto& f) { return f.index == i; }),
-          found.end());
-      std::size_t count = std::min(k, found.size());
-      if (count > 0) {
-        const double tie =
-            distance_tie_factor * distance_tie_factor * found[count - 1].squared_distance;
-        while (count < std::min(width, found.size()) && found[count].squared_distance <= tie)
-          ++count;
-      }
-      for (std::size_t b = 0; b < count; ++b)
-        lists.neighbor[i * width + b] = found[b].index;
-      lists.length[i] = static_cast<std::uint8_t>(count);
-    }
-  });
-  return lists;
-}
 
 /// Returns the links in only one direction: bit `b` of a point is set if its `b`-th neighbour lacks
 /// the reverse link. Computed in parallel.

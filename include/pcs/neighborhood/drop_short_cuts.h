@@ -5,16 +5,20 @@
 #ifndef PCS_NEIGHBORHOOD_DROP_SHORT_CUTS_H
 #define PCS_NEIGHBORHOOD_DROP_SHORT_CUTS_H
 
+#include <pcs/internal/Huge_page_allocator.h>
+#include <pcs/internal/instruction_set.h>
+#include <pcs/internal/lanes.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/neighborhood/Proximity_graph.h>
 
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <limits>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -41,107 +45,289 @@ constexpr double smallest_width = 0.02;
 
 namespace internal {
 
-/// A surface normal and its confidence in [0, 1].
-struct Surface_normal
-{
-  Eigen::Vector3f direction = Eigen::Vector3f::Zero();
-  float confidence = 0;
-};
+/// The direction of a surface normal, and its confidence in [0, 1] as the last coordinate.
+using Surface_normal = pcs::internal::Float4;
 
-inline Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen_system(const Eigen::Matrix3d& m)
-{
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
-  eigen.computeDirect(m);
-  return eigen;
-}
-
-/// Count, sum and second moments of a point and its neighbours, relative to the point. Single
-/// precision suffices for differences and halves the largest array of the construction.
+/// Sum and second moments of a point and its neighbours, relative to the point. Single precision
+/// suffices for differences and halves the largest array of the construction.
 struct Ring_moments
 {
-  float count = 0;
-  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-  Eigen::Matrix3f second = Eigen::Matrix3f::Zero();
+  using Float4 = pcs::internal::Float4;
 
-  /// Adds the moments `other`, taken about a point at `offset` from this one.
-  void add(const Ring_moments& other, const Eigen::Vector3f& offset)
+  Float4 sum{};      ///< x, y, z, and the count
+  Float4 squares{};  ///< xx, yy, zz
+  Float4 products{}; ///< xy, yz, zx
+
+  /// Adds a point. The last coordinate of `e` is 1.
+  PCS_ALWAYS_INLINE void add_point(const Float4& e)
   {
-    count += other.count;
-    sum += other.sum + other.count * offset;
-    second += other.second + other.sum * offset.transpose() + offset * other.sum.transpose() +
-              other.count * offset * offset.transpose();
+    sum = sum + e;
+    squares = squares + e * e;
+    products = products + e * pcs::internal::rotated(e);
+  }
+
+  /// Adds the moments `other`, taken about a point at `offset` from this one. The last coordinate
+  /// of `offset` is 0.
+  PCS_ALWAYS_INLINE void add(const Ring_moments& other, const Float4& offset)
+  {
+    // The mixed terms of (p + o)(p + o)^T are s o^T + o s^T + n o o^T.
+    const float count = other.sum[3];
+    const Float4 half = other.sum + (0.5f * count) * offset;
+    const Float4 next = pcs::internal::rotated(offset);
+    sum = sum + (other.sum + count * offset);
+    squares = squares + (other.squares + 2.0f * half * offset);
+    products = products + (other.products + half * next + offset * pcs::internal::rotated(half));
   }
 };
+
+/// The moments of eight points, the same coordinate of all points together.
+struct Block_moments
+{
+  static constexpr std::size_t size = 8;
+  float sum[4][size], squares[3][size], products[3][size];
+};
+
+/// Arithmetic on as many doubles as a register has.
+template <class Doubles>
+struct Normal_lanes
+{
+  static constexpr std::size_t size = sizeof(Doubles) / sizeof(double);
+
+  static PCS_ALWAYS_INLINE void load(const float* from, Doubles& to)
+  {
+    for (std::size_t l = 0; l < size; ++l)
+      to[l] = double(from[l]);
+  }
+  static PCS_ALWAYS_INLINE void root(const Doubles& x, Doubles& to)
+  {
+    for (std::size_t l = 0; l < size; ++l)
+      to[l] = std::sqrt(x[l]);
+  }
+  static PCS_ALWAYS_INLINE void cross(const Doubles* a, const Doubles* b, Doubles* c)
+  {
+    c[0] = a[1] * b[2] - a[2] * b[1];
+    c[1] = a[2] * b[0] - a[0] * b[2];
+    c[2] = a[0] * b[1] - a[1] * b[0];
+  }
+  static PCS_ALWAYS_INLINE void squared_norm(const Doubles* a, Doubles& to)
+  {
+    to = a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
+  }
+  /// Replaces `c` by `other`, if that is longer. `n` and `other_n` are squared lengths.
+  static PCS_ALWAYS_INLINE void
+  take_longer(const Doubles* other, const Doubles& other_n, Doubles* c, Doubles& n)
+  {
+    for (std::size_t k = 0; k < 3; ++k)
+      pcs::internal::select_less(n, other_n, other[k], c[k], c[k]);
+    pcs::internal::select_less(n, other_n, other_n, n, n);
+  }
+
+  /*!
+    Computes the normals of the planes of points with moments `m`. The confidence of a normal is 0
+    if the points are on no plane. The smallest eigenvalue is the limit of Newton's method from 0
+    for the characteristic polynomial, which is slow only for multiple eigenvalues, without a plane.
+  */
+  static PCS_ALWAYS_INLINE void
+  find(const Block_moments& m, std::size_t first, Surface_normal* normal)
+  {
+    Doubles s[4], d[3], p[3], zero{}, one;
+    pcs::internal::fill(1.0, one);
+    for (std::size_t k = 0; k < 4; ++k)
+      load(m.sum[k] + first, s[k]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      load(m.squares[k] + first, d[k]);
+      load(m.products[k] + first, p[k]);
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      d[k] = d[k] - s[k] * s[k] / s[3];
+      p[k] = p[k] - s[k] * s[(k + 1) % 3] / s[3];
+    }
+    Doubles trace = d[0] + d[1] + d[2];
+    pcs::internal::select_less(zero, trace, trace, one, trace);
+    for (std::size_t k = 0; k < 3; ++k) {
+      d[k] = d[k] / trace;
+      p[k] = p[k] / trace;
+    }
+    // rows (d0 p0 p2), (p0 d1 p1), (p2 p1 d2); the trace is 1
+    const Doubles minors =
+        d[0] * d[1] - p[0] * p[0] + d[1] * d[2] - p[1] * p[1] + d[2] * d[0] - p[2] * p[2];
+    const Doubles determinant = d[0] * (d[1] * d[2] - p[1] * p[1]) -
+                                p[0] * (p[0] * d[2] - p[1] * p[2]) +
+                                p[2] * (p[0] * p[1] - d[1] * p[2]);
+    constexpr int number_of_steps = 8;
+    Doubles least{};
+    for (int step = 0; step < number_of_steps; ++step) {
+      const Doubles value = ((least - 1.0) * least + minors) * least - determinant;
+      const Doubles slope = (3.0 * least - 2.0) * least + minors;
+      Doubles change = -value / slope;
+      pcs::internal::select_less(zero, change, change, zero, change); // rounding
+      least = least + change;
+    }
+    const Doubles sum = 1.0 - least, product = minors - least * sum;
+    Doubles difference = sum * sum - 4.0 * product;
+    pcs::internal::select_less(difference, zero, zero, difference, difference);
+    root(difference, difference);
+    const Doubles largest = 0.5 * (sum + difference), middle = sum - largest;
+    // the rows of the matrix minus the eigenvalue are perpendicular to the normal
+    const Doubles r0[3] = {d[0] - least, p[0], p[2]}, r1[3] = {p[0], d[1] - least, p[1]},
+                  r2[3] = {p[2], p[1], d[2] - least};
+    Doubles c[3], other[3], n, other_n;
+    cross(r0, r1, c);
+    squared_norm(c, n);
+    cross(r1, r2, other);
+    squared_norm(other, other_n);
+    take_longer(other, other_n, c, n);
+    cross(r2, r0, other);
+    squared_norm(other, other_n);
+    take_longer(other, other_n, c, n);
+    root(n, n);
+    for (std::size_t l = 0; l < size; ++l) {
+      Surface_normal result{};
+      const bool is_plane = middle[l] > smallest_width * largest[l] &&
+                            least[l] < largest_thickness * middle[l] && n[l] > 0;
+      if (is_plane) {
+        for (std::size_t k = 0; k < 3; ++k)
+          result[k] = static_cast<float>(c[k][l] / n[l]);
+        result[3] = static_cast<float>(1 - least[l] / (largest_thickness * middle[l]));
+      }
+      normal[first + l] = result;
+    }
+  }
+};
+
+inline void find_normals_plain(const Block_moments& m, Surface_normal* normal)
+{
+  for (std::size_t first = 0; first < Block_moments::size; first += 2)
+    Normal_lanes<pcs::internal::Double2>::find(m, first, normal);
+}
+
+#if PCS_HAS_RUNTIME_DISPATCH
+PCS_TARGET_AVX2_UNFUSED inline void find_normals_avx2(const Block_moments& m,
+                                                      Surface_normal* normal)
+{
+  for (std::size_t first = 0; first < Block_moments::size; first += 4)
+    Normal_lanes<pcs::internal::Double4>::find(m, first, normal);
+}
+#endif
+
+/// Returns the kernel for this machine. All give the same bits.
+inline void (*choose_find_normals())(const Block_moments&, Surface_normal*)
+{
+#if PCS_HAS_RUNTIME_DISPATCH
+  if (pcs::internal::has_avx2())
+    return &find_normals_avx2;
+#endif
+  return &find_normals_plain;
+}
+
+/// Returns the inverse of the root mean square length of the edges. It keeps their squares in the
+/// range of a float.
+template <class ConcurrencyTag>
+double unit_of_edges(const std::vector<Vec3>& points, const Proximity_graph& graph)
+{
+  const double sum = pcs::internal::blocked_reduce<ConcurrencyTag>(
+      points.size(),
+      0.0,
+      [&](std::size_t i) {
+        double squares = 0;
+        for (auto j = graph.begin(i); j != graph.end(i); ++j)
+          squares += (points[*j] - points[i]).squaredNorm();
+        return squares;
+      },
+      std::plus<double>());
+  return sum > 0 ? std::sqrt(static_cast<double>(graph.neighbor.size()) / sum) : 1;
+}
+
+PCS_ALWAYS_INLINE pcs::internal::Float4
+scaled_edge(const Vec3& from, const Vec3& to, double scale, float last)
+{
+  return pcs::internal::Float4{static_cast<float>(scale * (to[0] - from[0])),
+                               static_cast<float>(scale * (to[1] - from[1])),
+                               static_cast<float>(scale * (to[2] - from[2])),
+                               last};
+}
+
+/// Returns the moments of each point and its neighbours, in units of `1 / scale`.
+template <class ConcurrencyTag>
+pcs::internal::Huge_vector<Ring_moments>
+ring_moments(const std::vector<Vec3>& points, const Proximity_graph& graph, double scale)
+{
+  pcs::internal::Huge_vector<Ring_moments> ring(points.size());
+  pcs::internal::for_each_index<ConcurrencyTag>(points.size(), [&](std::size_t i) {
+    Ring_moments m;
+    m.sum[3] = 1;
+    for (auto j = graph.begin(i); j != graph.end(i); ++j)
+      m.add_point(scaled_edge(points[i], points[*j], scale, 1));
+    ring[i] = m;
+  });
+  return ring;
+}
 
 /// Estimates normals from two rings of neighbours; a point counts once per path to it. Links
 /// between two parallel sheets hardly change the result, because both sheets have the same normal.
 template <class ConcurrencyTag>
-std::vector<Surface_normal> surface_normals(const std::vector<Vec3>& points,
-                                            const Proximity_graph& graph)
+pcs::internal::Huge_vector<Surface_normal> surface_normals(const std::vector<Vec3>& points,
+                                                           const Proximity_graph& graph)
 {
-  // Edges are divided by their mean length, to keep their squares in the range of a float.
-  double sum_of_lengths = 0;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    for (auto j = graph.begin(i); j != graph.end(i); ++j)
-      sum_of_lengths += (points[*j] - points[i]).norm();
-  const double scale =
-      sum_of_lengths > 0 ? static_cast<double>(graph.neighbor.size()) / sum_of_lengths : 1;
-  const auto scaled = [scale](const Vec3& e) { return Eigen::Vector3f((scale * e).cast<float>()); };
-  std::vector<Ring_moments> one_ring(points.size());
-  pcs::internal::for_each_index<ConcurrencyTag>(points.size(), [&](std::size_t i) {
-    Ring_moments& m = one_ring[i];
-    m.count = 1 + static_cast<float>(graph.degree(i));
-    for (auto j = graph.begin(i); j != graph.end(i); ++j) {
-      const Eigen::Vector3f e = scaled(points[*j] - points[i]);
-      m.sum += e;
-      m.second += e * e.transpose();
-    }
-  });
-  std::vector<Surface_normal> normal(points.size());
-  pcs::internal::for_each_index<ConcurrencyTag>(points.size(), [&](std::size_t i) {
+  const double scale = unit_of_edges<ConcurrencyTag>(points, graph);
+  const auto ring = ring_moments<ConcurrencyTag>(points, graph, scale);
+  const auto find_normals = choose_find_normals();
+  constexpr std::size_t block = Block_moments::size;
+  const std::size_t n = points.size(), number_of_blocks = (n + block - 1) / block;
+  pcs::internal::Huge_vector<Surface_normal> normal(number_of_blocks * block);
+  pcs::internal::for_each_index<ConcurrencyTag>(
+      number_of_blocks,
+      [&](std::size_t b) {
+        Block_moments moments;
+        for (std::size_t l = 0; l < block; ++l) {
+          const std::size_t i = std::min(b * block + l, n - 1);
+          Ring_moments m = ring[i];
+          for (auto j = graph.begin(i); j != graph.end(i); ++j)
+            m.add(ring[*j], scaled_edge(points[i], points[*j], scale, 0));
+          for (std::size_t k = 0; k < 4; ++k)
+            moments.sum[k][l] = m.sum[k];
+          for (std::size_t k = 0; k < 3; ++k) {
+            moments.squares[k][l] = m.squares[k];
+            moments.products[k][l] = m.products[k];
+          }
+        }
+        find_normals(moments, normal.data() + b * block);
+      },
+      128);
+  for (std::size_t i = 0; i < n; ++i) // a point and one neighbour span no plane
     if (graph.degree(i) < 2)
-      return;
-    Ring_moments m = one_ring[i];
-    for (auto j = graph.begin(i); j != graph.end(i); ++j)
-      m.add(one_ring[*j], scaled(points[*j] - points[i]));
-    const Eigen::Matrix3f spread = m.second - m.sum * m.sum.transpose() / m.count;
-    const auto eigen = eigen_system(spread.cast<double>());
-    const Vec3 values = eigen.eigenvalues();
-    if (!(values[1] > smallest_width * values[2]) || !eigen.eigenvectors().allFinite())
-      return;
-    normal[i].direction = eigen.eigenvectors().col(0).cast<float>();
-    normal[i].confidence =
-        static_cast<float>(std::max(0.0, 1 - values[0] / (largest_thickness * values[1])));
-  });
+      normal[i] = Surface_normal{};
   return normal;
 }
 
 /// Averages the normals of each neighbourhood by confidence, up to sign. At the boundary of a
 /// sheet, half of the neighbourhood is missing, and a single estimate may be tangent to the sheet.
 template <class ConcurrencyTag>
-std::vector<Surface_normal> settled_normals(const Proximity_graph& graph,
-                                            const std::vector<Surface_normal>& normal)
+pcs::internal::Huge_vector<Surface_normal>
+settled_normals(const Proximity_graph& graph,
+                const pcs::internal::Huge_vector<Surface_normal>& normal)
 {
-  std::vector<Surface_normal> settled(normal.size());
-  pcs::internal::for_each_index<ConcurrencyTag>(normal.size(), [&](std::size_t i) {
-    const Surface_normal* best = &normal[i];
+  pcs::internal::Huge_vector<Surface_normal> settled(normal.size());
+  pcs::internal::for_each_index<ConcurrencyTag>(graph.size(), [&](std::size_t i) {
+    std::size_t best = i;
     for (auto j = graph.begin(i); j != graph.end(i); ++j)
-      if (normal[*j].confidence > best->confidence)
-        best = &normal[*j];
-    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-    const auto add = [&](const Surface_normal& n) {
-      const float weight = n.confidence * n.confidence;
-      sum += n.direction.dot(best->direction) < 0 ? Eigen::Vector3f(-weight * n.direction)
-                                                  : Eigen::Vector3f(weight * n.direction);
+      best = normal[*j][3] > normal[best][3] ? *j : best;
+    const Surface_normal reference = normal[best];
+    Surface_normal sum{};
+    const auto add = [&](const Surface_normal& n) PCS_LAMBDA_INLINE {
+      const Surface_normal product = n * reference;
+      const float cosine = product[0] + product[1] + product[2];
+      sum = sum + std::copysign(n[3] * n[3], cosine) * n; // without a branch
     };
     add(normal[i]);
     for (auto j = graph.begin(i); j != graph.end(i); ++j)
       add(normal[*j]);
-    const float length = sum.norm();
+    const float length = std::sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
+    settled[i] = Surface_normal{};
     if (!(length > 0))
       return;
-    settled[i].direction = sum / length;
-    settled[i].confidence = std::sqrt(length / static_cast<float>(graph.degree(i) + 1));
+    settled[i] = sum * (1 / length);
+    settled[i][3] = std::sqrt(length / static_cast<float>(graph.degree(i) + 1));
   });
   return settled;
 }
@@ -241,13 +427,15 @@ std::size_t drop_short_cuts(const std::vector<Vec3>& points, Proximity_graph& gr
 {
   using internal::Surface_normal;
   constexpr float smallest_confidence = 0.05f;
-  std::vector<Surface_normal> normal = internal::surface_normals<ConcurrencyTag>(points, graph);
+  auto normal = internal::surface_normals<ConcurrencyTag>(points, graph);
   for (int round = 0; round < 2; ++round)
     normal = internal::settled_normals<ConcurrencyTag>(graph, normal);
 
-  const auto leaves_surface = [&](std::size_t i, const Vec3& e) {
-    return normal[i].confidence > smallest_confidence &&
-           std::abs(normal[i].direction.cast<double>().dot(e)) > smallest_short_cut_sine * e.norm();
+  const auto leaves_surface = [&](std::size_t i, const Vec3& e, double squared) {
+    const Surface_normal& n = normal[i];
+    const double height = double(n[0]) * e.x() + double(n[1]) * e.y() + double(n[2]) * e.z();
+    return n[3] > smallest_confidence &&
+           height * height > smallest_short_cut_sine * smallest_short_cut_sine * squared;
   };
   std::vector<char> is_suspected(graph.neighbor.size(), 0);
   std::vector<std::uint32_t> trusted_degree(points.size(), 0);
@@ -255,7 +443,9 @@ std::size_t drop_short_cuts(const std::vector<Vec3>& points, Proximity_graph& gr
     for (std::size_t e = graph.first[i]; e < graph.first[i + 1]; ++e) {
       const std::size_t j = graph.neighbor[e];
       const Vec3 edge = points[j] - points[i];
-      is_suspected[e] = leaves_surface(i, edge) && leaves_surface(j, edge) ? 1 : 0;
+      const double squared = edge.squaredNorm();
+      is_suspected[e] =
+          leaves_surface(i, edge, squared) && leaves_surface(j, edge, squared) ? 1 : 0;
       trusted_degree[i] += is_suspected[e] ? 0u : 1u;
     }
   });
@@ -276,6 +466,8 @@ std::size_t drop_short_cuts(const std::vector<Vec3>& points, Proximity_graph& gr
   };
   std::vector<char> is_dropped(graph.neighbor.size(), 0);
   pcs::internal::for_each_index<ConcurrencyTag>(points.size(), [&](std::size_t i) {
+    if (trusted_degree[i] == graph.degree(i))
+      return;
     for (std::size_t e = graph.first[i]; e < graph.first[i + 1]; ++e) {
       const std::size_t j = graph.neighbor[e];
       is_dropped[e] = is_suspected[e] && trusted_degree[i] >= smallest_remaining_degree &&

@@ -49,8 +49,13 @@ struct Octree_cell
       low = low.cwiseMin(point_at(i));
       high = high.cwiseMax(point_at(i));
     }
-    extent = (high - low).maxCoeff();
-    center = low + octree_cut * (high - low);
+    *this = Octree_cell(low, high);
+  }
+
+  /// \param low,high the corners of the tight box
+  Octree_cell(const Vec3& low, const Vec3& high)
+    : center(low + octree_cut * (high - low)), extent((high - low).maxCoeff())
+  {
   }
 
   int octant(const Vec3& p) const

@@ -7,6 +7,7 @@
 
 #include <pcs/core/Deformation_options.h>
 #include <pcs/deformation/body/Sample_regions.h>
+#include <pcs/deformation/body/nearest_samples.h>
 #include <pcs/deformation/model/Point_blocks.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/neighborhood/Proximity_graph.h>
@@ -32,16 +33,12 @@ struct Sample_links
 
 namespace internal {
 
-/// A candidate sample of a point. Candidates are sorted by distance.
-struct Sample_candidate
+/// Rounds a value in [0, 2^31) half up.
+inline double rounded(double x)
 {
-  double distance;
-  std::uint32_t sample;
-  bool operator<(const Sample_candidate& other) const
-  {
-    return distance != other.distance ? distance < other.distance : sample < other.sample;
-  }
-};
+  const double whole = static_cast<double>(static_cast<std::int32_t>(x));
+  return whole + (x - whole >= 0.5 ? 1 : 0);
+}
 
 /// Returns the weights of the first `k` candidates, which sum to one; empty without candidates.
 inline void sample_weights(const std::vector<Sample_candidate>& nearest,
@@ -52,16 +49,18 @@ inline void sample_weights(const std::vector<Sample_candidate>& nearest,
   weight.assign(std::min(k, nearest.size()), 1);
   if (nearest.empty())
     return;
-  // With fewer than K + 1 samples in reach, the support ends beyond the last sample.
-  const double support = nearest.size() > k ? nearest[k].distance : 1.5 * nearest.back().distance;
+  // With fewer than K + 1 samples in reach, the support ends beyond the last sample. [L^2]
+  const double support = nearest.size() > k ? nearest[k].squared_distance
+                                            : 1.5 * 1.5 * nearest.back().squared_distance;
+  const double scale = support > 0 ? 1 / support : 0;
   double sum = 0;
   for (std::size_t b = 0; b < weight.size(); ++b) {
-    const double d = nearest[b].distance;
+    const double squared = nearest[b].squared_distance;
     if (kind == Sample_weights::compact) {
-      const double f = support > 0 ? std::max(0.0, 1 - (d / support) * (d / support)) : 1;
+      const double f = std::max(0.0, 1 - squared * scale);
       weight[b] = f * f;
     } else // the point may be the sample itself
-      weight[b] = 1 / std::max(d * d, 1e-24 * support * support + 1e-300);
+      weight[b] = 1 / std::max(squared, 1e-24 * support + 1e-300);
     sum += weight[b];
   }
   if (!(sum > 0)) { // K + 1 samples at the same distance
@@ -69,9 +68,10 @@ inline void sample_weights(const std::vector<Sample_candidate>& nearest,
     sum = static_cast<double>(weight.size());
   }
   // Round to the 16 bits in which weights are stored; the nearest sample gets the remainder.
+  const double steps = weight_steps / sum;
   double others = 0;
   for (std::size_t b = weight.size(); b-- > 0;) {
-    weight[b] = std::round(weight_steps * weight[b] / sum) / weight_steps;
+    weight[b] = rounded(steps * weight[b]) / weight_steps;
     if (b > 0)
       others += weight[b];
   }
@@ -111,25 +111,6 @@ std::vector<std::vector<std::uint32_t>> sample_rings(const Weighted_graph& graph
   return rings;
 }
 
-/// Finds the `k + 1` nearest samples of the ring, nearest first, or all if there are fewer.
-inline void nearest_samples(const Vec3& point,
-                            const std::vector<Vec3>& sample_points,
-                            const std::vector<std::uint32_t>& ring,
-                            std::size_t k,
-                            std::vector<Sample_candidate>& nearest)
-{
-  nearest.clear();
-  for (const auto s : ring)
-    nearest.push_back({(sample_points[s] - point).squaredNorm(), s});
-  const std::size_t count = std::min(k + 1, nearest.size());
-  std::partial_sort(nearest.begin(),
-                    nearest.begin() + static_cast<std::ptrdiff_t>(count),
-                    nearest.end());
-  nearest.resize(count);
-  for (auto& candidate : nearest)
-    candidate.distance = std::sqrt(candidate.distance);
-}
-
 } // namespace internal
 
 /*!
@@ -160,18 +141,23 @@ Sample_links link_by_regions(const std::vector<Vec3>& points,
       points.size(),
       1024,
       [&](std::size_t begin, std::size_t end) {
+        const auto& label = regions.sample_of_point;
+        internal::Ring_search search(sample_points, k);
         std::vector<internal::Sample_candidate> nearest;
         std::vector<double> weight;
-        for (std::size_t i = begin; i < end; ++i) {
-          if (regions.sample_of_point[i] == no_sample)
+        std::size_t next = begin;
+        for (std::size_t i = begin; i < end; i = next) {
+          // consecutive points of the same region have the same candidates
+          while (next < end && next < i + internal::Ring_search::size && label[next] == label[i])
+            ++next;
+          if (label[i] == no_sample)
             continue;
-          internal::nearest_samples(points[i],
-                                    sample_points,
-                                    rings[regions.sample_of_point[i]],
-                                    k,
-                                    nearest);
-          internal::sample_weights(nearest, weights, k, weight);
-          internal::write_links(nearest, weight, i, links);
+          search.start(points.data() + i, next - i, label[i], rings[label[i]]);
+          for (std::size_t l = 0; l < next - i; ++l) {
+            search.nearest(l, nearest);
+            internal::sample_weights(nearest, weights, k, weight);
+            internal::write_links(nearest, weight, i + l, links);
+          }
         }
       });
   return links;
@@ -228,7 +214,7 @@ Sample_links link_by_hops(const std::vector<Vec3>& points,
           nearest.clear();
           for (std::size_t b = 0; b < count[i]; ++b) {
             const std::uint32_t s = label[i * wanted + b];
-            nearest.push_back({(points[samples[s]] - points[i]).norm(), s});
+            nearest.push_back({(points[samples[s]] - points[i]).squaredNorm(), s});
           }
           std::sort(nearest.begin(), nearest.end());
           internal::sample_weights(nearest, weights, k, weight);

@@ -7,9 +7,13 @@
 
 #include <pcs/deformation/model/Elastic_network.h>
 #include <pcs/internal/compress_rows.h>
+#include <pcs/internal/parallel.h>
 #include <pcs/neighborhood/Proximity_graph.h>
 
+#include <CGAL/tags.h>
+
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -35,56 +39,205 @@ constexpr double steps_per_edge = 64;
 /// Longer edges count as this long. Only outliers have such edges.
 constexpr std::uint32_t largest_edge_steps = 4096;
 
+namespace internal {
+
+/// The distance of a site to its sample in the upper half and the sample in the lower half, so that
+/// one comparison finds the nearer sample, and the smaller number among equally near ones.
+using Region_key = std::uint64_t;
+constexpr Region_key unreached = ~Region_key(0);
+/// Larger distances are equal to this one. No cloud has as many points as such a path.
+constexpr Region_key largest_region_distance = 0xfffffffe;
+
+inline Region_key region_key(Region_key distance, std::uint32_t sample)
+{
+  return std::min(distance, largest_region_distance) << 32 | sample;
+}
+
+/*!
+  Shortest paths from the samples to the sites of one block of consecutive sites. Distances are
+  whole numbers, so waiting sites are kept in lists, one for each distance.
+
+  Keys only decrease, and the smallest ones do not depend on the order of the steps. Blocks can
+  therefore run concurrently: each lowers keys of its neighbours, too, and reports these sites.
+*/
+template <class ConcurrencyTag>
+class Region_block
+{
+public:
+  using Keys = std::vector<std::atomic<Region_key>>;
+
+  Region_block(const std::vector<Vec3>& points,
+               const neighborhood::Proximity_graph& graph,
+               double scale,
+               Keys& keys)
+    : m_points(points),
+      m_graph(graph),
+      m_scale(scale),
+      m_keys(keys),
+      m_head(largest_edge_steps + 1, none)
+  {
+  }
+
+  /// Follows the edges from the sites `changed`, all in `[begin, end)`, whose keys were lowered,
+  /// until no key of this block changes. Appends other sites whose keys were lowered to `outside`.
+  void run(std::size_t begin,
+           std::size_t end,
+           const std::vector<std::uint32_t>& changed,
+           std::vector<std::uint32_t>& outside)
+  {
+    m_starts.clear();
+    for (const std::uint32_t site : changed)
+      m_starts.emplace_back(distance(key(site)), site);
+    std::sort(m_starts.begin(), m_starts.end());
+    m_entries.clear();
+    m_number_of_waiting = 0;
+    auto start = m_starts.begin();
+    for (Region_key d = 0; start != m_starts.end() || m_number_of_waiting > 0; ++d) {
+      if (m_number_of_waiting == 0)
+        d = std::max(d, start->first);
+      for (; start != m_starts.end() && start->first == d; ++start)
+        follow_edges(start->second, d, begin, end, outside);
+      std::uint32_t entry = std::exchange(m_head[d % m_head.size()], none);
+      for (; entry != none; entry = m_entries[entry].next) {
+        --m_number_of_waiting;
+        follow_edges(m_entries[entry].site, d, begin, end, outside);
+      }
+    }
+  }
+
+private:
+  static constexpr std::uint32_t none = ~std::uint32_t(0);
+  struct Entry
+  {
+    std::uint32_t site, next;
+  };
+
+  static Region_key distance(Region_key key) { return key >> 32; }
+
+  Region_key key(std::size_t site) const { return m_keys[site].load(std::memory_order_relaxed); }
+
+  /// Lowers the key of a site. Returns `false` if it was not larger.
+  bool lower(std::size_t site, Region_key value)
+  {
+    Region_key old = key(site);
+    if constexpr (pcs::internal::is_parallel<ConcurrencyTag>()) {
+      while (value < old)
+        if (m_keys[site].compare_exchange_weak(old, value, std::memory_order_relaxed))
+          return true;
+      return false;
+    }
+    if (value < old)
+      m_keys[site].store(value, std::memory_order_relaxed);
+    return value < old;
+  }
+
+  /// Returns the length of an edge, rounded, at least 1 and at most `largest_edge_steps`.
+  Region_key steps(std::size_t i, std::size_t j) const
+  {
+    const double length =
+        std::min(m_scale * (m_points[j] - m_points[i]).norm(), double(largest_edge_steps));
+    const auto whole = static_cast<Region_key>(length);
+    return std::max<Region_key>(whole + (length - static_cast<double>(whole) >= 0.5 ? 1 : 0), 1);
+  }
+
+  /// Does nothing if the distance of `i` is smaller than `d`, as then it was or will be followed
+  /// from there.
+  void follow_edges(std::uint32_t i,
+                    Region_key d,
+                    std::size_t begin,
+                    std::size_t end,
+                    std::vector<std::uint32_t>& outside)
+  {
+    const Region_key from = key(i);
+    if (distance(from) != std::min(d, largest_region_distance))
+      return;
+    const auto sample = static_cast<std::uint32_t>(from);
+    for (auto j = m_graph.begin(i); j != m_graph.end(i); ++j) {
+      if (key(*j) <= from) // an edge has at least one step
+        continue;
+      const Region_key through_i = d + steps(i, *j);
+      if (!lower(*j, region_key(through_i, sample)))
+        continue;
+      if (*j < begin || *j >= end) {
+        outside.push_back(*j);
+        continue;
+      }
+      std::uint32_t& head = m_head[through_i % m_head.size()];
+      m_entries.push_back({*j, head});
+      head = static_cast<std::uint32_t>(m_entries.size() - 1);
+      ++m_number_of_waiting;
+    }
+  }
+
+  const std::vector<Vec3>& m_points;
+  const neighborhood::Proximity_graph& m_graph;
+  double m_scale;
+  Keys& m_keys;
+  std::vector<std::uint32_t> m_head; ///< first entry of each distance
+  std::vector<Entry> m_entries;
+  std::vector<std::pair<Region_key, std::uint32_t>> m_starts; ///< distance, site
+  std::size_t m_number_of_waiting = 0;
+};
+
+} // namespace internal
+
 /*!
   Grows all samples at once over the edges, by length (Dijkstra with buckets). Ties go to the sample
   with the smaller number. O(n degree) for any number of samples; Algorithm 1 of [Aiteanu 2022]
-  searches from every point.
+  searches from every point. Blocks of consecutive points, which should be near each other, are
+  searched one after another or concurrently, so that memory is read locally; the result is the
+  same in any order.
 */
-inline Sample_regions grow_regions(const std::vector<Vec3>& points,
-                                   const neighborhood::Proximity_graph& graph,
-                                   const std::vector<std::uint32_t>& samples)
+template <class ConcurrencyTag = CGAL::Sequential_tag>
+Sample_regions grow_regions(const std::vector<Vec3>& points,
+                            const neighborhood::Proximity_graph& graph,
+                            const std::vector<std::uint32_t>& samples)
 {
-  constexpr auto infinity = std::numeric_limits<std::uint64_t>::max();
-  const double edge = typical_edge(points, graph);
+  using Block = internal::Region_block<ConcurrencyTag>;
+  constexpr std::size_t block_size = 4096;
+  const double edge = typical_edge<ConcurrencyTag>(points, graph);
   const double scale = edge > 0 ? steps_per_edge / edge : 1;
-  Sample_regions regions;
-  regions.sample_of_point.assign(points.size(), no_sample);
-  std::vector<std::uint64_t> distance(points.size(), infinity);
-  std::vector<std::vector<std::uint32_t>> bucket(largest_edge_steps + 1);
-  std::size_t number_of_waiting = samples.size();
+  const std::size_t n = points.size(), number_of_blocks = (n + block_size - 1) / block_size;
+  typename Block::Keys keys(n);
+  pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t i) {
+    keys[i].store(internal::unreached, std::memory_order_relaxed);
+  });
+  std::vector<std::vector<std::uint32_t>> changed(number_of_blocks), outside;
   for (std::size_t s = 0; s < samples.size(); ++s) {
-    distance[samples[s]] = 0;
-    regions.sample_of_point[samples[s]] = static_cast<std::uint32_t>(s);
-    bucket[0].push_back(samples[s]);
+    keys[samples[s]] = internal::region_key(0, static_cast<std::uint32_t>(s));
+    changed[samples[s] / block_size].push_back(samples[s]);
   }
-  // Every edge takes at least one step. The entries of a bucket are therefore final when it is
-  // read, and their order does not matter.
-  for (std::uint64_t d = 0; number_of_waiting > 0; ++d) {
-    auto& now = bucket[d % bucket.size()];
-    number_of_waiting -= now.size();
-    for (const std::uint32_t i : now) {
-      if (distance[i] != d)
-        continue;
-      const std::uint32_t s = regions.sample_of_point[i];
-      for (auto j = graph.begin(i); j != graph.end(i); ++j) {
-        if (distance[*j] <= d)
-          continue;
-        const double steps = std::round(scale * (points[*j] - points[i]).norm());
-        const std::uint64_t through_i =
-            d +
-            static_cast<std::uint64_t>(std::min(std::max(steps, 1.0), double(largest_edge_steps)));
-        std::uint32_t& label = regions.sample_of_point[*j];
-        if (through_i < distance[*j]) {
-          distance[*j] = through_i;
-          label = s;
-          bucket[through_i % bucket.size()].push_back(*j);
-          ++number_of_waiting;
-        } else if (through_i == distance[*j])
-          label = std::min(label, s);
-      }
-    }
-    now.clear();
+  std::vector<std::size_t> active;
+  while (true) {
+    active.clear();
+    for (std::size_t b = 0; b < number_of_blocks; ++b)
+      if (!changed[b].empty())
+        active.push_back(b);
+    if (active.empty())
+      break;
+    outside.resize(active.size());
+    pcs::internal::for_each_block<ConcurrencyTag>(
+        active.size(),
+        4,
+        [&](std::size_t begin, std::size_t end) {
+          Block block(points, graph, scale, keys);
+          for (std::size_t a = begin; a < end; ++a) {
+            const std::size_t first = active[a] * block_size;
+            outside[a].clear();
+            block.run(first, first + block_size, changed[active[a]], outside[a]);
+            changed[active[a]].clear();
+          }
+        });
+    for (std::size_t a = 0; a < active.size(); ++a)
+      for (const std::uint32_t site : outside[a])
+        changed[site / block_size].push_back(site);
   }
+  Sample_regions regions;
+  regions.sample_of_point.resize(n);
+  pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t i) {
+    regions.sample_of_point[i] =
+        static_cast<std::uint32_t>(keys[i].load(std::memory_order_relaxed));
+  });
   return regions;
 }
 

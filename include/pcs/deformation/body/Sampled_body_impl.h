@@ -275,7 +275,7 @@ bool Sampled_body<ConcurrencyTag>::link_samples(const std::vector<Vec3>& sites,
                                                 Graph graph,
                                                 pcs::internal::Progress& progress)
 {
-  Sample_regions regions = grow_regions(sites, graph, site_of_sample);
+  Sample_regions regions = grow_regions<ConcurrencyTag>(sites, graph, site_of_sample);
   network.surface = sample_graph(sites, graph, site_of_sample, regions, weight_unit);
   if (internal::is_resolving(options))
     weigh_by_cells(sites);

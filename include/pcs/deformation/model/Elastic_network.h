@@ -8,6 +8,8 @@
 #include <pcs/internal/parallel.h>
 #include <pcs/neighborhood/Proximity_graph.h>
 
+#include <CGAL/tags.h>
+
 #include <Eigen/Core>
 
 #include <algorithm>
@@ -16,6 +18,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <vector>
 
 namespace pcs {
@@ -57,21 +60,66 @@ inline double representable_weight(double w)
   return std::isfinite(w) ? std::min(1e9, std::max(1e-30, w)) : 1;
 }
 
+namespace internal {
+
+/// Sorts two values, without a branch.
+inline void sort_two(double& a, double& b)
+{
+  const double smaller = std::min(a, b);
+  b = std::max(a, b);
+  a = smaller;
+}
+
+/// Sorts eight values by a network, which has no branches.
+inline void sort_eight(double* v)
+{
+  constexpr int pairs[][2] = {{0, 2},
+                              {1, 3},
+                              {4, 6},
+                              {5, 7},
+                              {0, 4},
+                              {1, 5},
+                              {2, 6},
+                              {3, 7},
+                              {0, 1},
+                              {2, 3},
+                              {4, 5},
+                              {6, 7},
+                              {2, 4},
+                              {3, 5},
+                              {1, 4},
+                              {3, 6},
+                              {1, 2},
+                              {3, 4},
+                              {5, 6}};
+  for (const auto& pair : pairs)
+    sort_two(v[pair[0]], v[pair[1]]);
+}
+
+} // namespace internal
+
 /// Returns the spacing at node `i`: the median length of its edges, which is robust against a
 /// single outlier. [L]
 inline double local_spacing(const std::vector<Vec3>& rest,
                             const neighborhood::Proximity_graph& graph,
                             std::size_t i)
 {
-  std::array<double, 64> lengths;
-  const std::size_t count = std::min(lengths.size(), graph.degree(i));
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  std::array<double, 64> squares;
+  const std::size_t count = std::min(squares.size(), graph.degree(i));
   if (count == 0)
     return 0;
   for (std::size_t e = 0; e < count; ++e)
-    lengths[e] = (rest[graph.begin(i)[e]] - rest[i]).norm();
-  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(count / 2);
-  std::nth_element(lengths.begin(), middle, lengths.begin() + static_cast<std::ptrdiff_t>(count));
-  return *middle;
+    squares[e] = (rest[graph.begin(i)[e]] - rest[i]).squaredNorm();
+  if (count <= 8) {
+    for (std::size_t e = count; e < 8; ++e)
+      squares[e] = infinity;
+    internal::sort_eight(squares.data());
+  } else
+    std::nth_element(squares.begin(),
+                     squares.begin() + static_cast<std::ptrdiff_t>(count / 2),
+                     squares.begin() + static_cast<std::ptrdiff_t>(count));
+  return std::sqrt(squares[count / 2]);
 }
 
 /// Sets `area` from the spacings; \p component holds the component of each node.
@@ -97,28 +145,35 @@ void set_areas(const std::vector<std::uint32_t>& component, Elastic_network& net
 constexpr double longest_typical_edge = 4;
 
 /// Returns the root mean square length of the edges, without edges to outliers. [L]
-inline double typical_edge(const std::vector<Vec3>& rest,
-                           const neighborhood::Proximity_graph& graph)
+template <class ConcurrencyTag = CGAL::Sequential_tag>
+double typical_edge(const std::vector<Vec3>& rest, const neighborhood::Proximity_graph& graph)
 {
-  std::vector<double> spacing;
-  for (std::size_t i = 0; i < graph.size(); ++i)
-    if (graph.degree(i) > 0)
-      spacing.push_back(local_spacing(rest, graph, i));
+  const std::size_t n = graph.size();
+  std::vector<double> spacing(n);
+  pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t i) {
+    spacing[i] = local_spacing(rest, graph, i);
+  });
+  spacing.erase(std::remove(spacing.begin(), spacing.end(), 0.0), spacing.end()); // without edges
   if (spacing.empty())
     return 0;
   const auto middle = spacing.begin() + static_cast<std::ptrdiff_t>(spacing.size() / 2);
   std::nth_element(spacing.begin(), middle, spacing.end());
   const double longest = longest_typical_edge * *middle;
-  double sum = 0, count = 0;
-  for (std::size_t i = 0; i < graph.size(); ++i)
-    for (auto j = graph.begin(i); j != graph.end(i); ++j) {
-      const double squared = (rest[*j] - rest[i]).squaredNorm();
-      if (squared <= longest * longest) {
-        sum += squared;
-        count += 1;
-      }
-    }
-  return count > 0 ? std::sqrt(sum / count) : *middle;
+  using Sum = Eigen::Vector2d; // of squared lengths, and of the edges
+  const Sum sum = pcs::internal::blocked_reduce<ConcurrencyTag>(
+      n,
+      Sum(0, 0),
+      [&](std::size_t i) {
+        Sum row(0, 0);
+        for (auto j = graph.begin(i); j != graph.end(i); ++j) {
+          const double squared = (rest[*j] - rest[i]).squaredNorm();
+          const bool is_typical = squared <= longest * longest;
+          row += Sum(is_typical ? squared : 0, is_typical ? 1 : 0);
+        }
+        return row;
+      },
+      [](const Sum& a, const Sum& b) { return Sum(a + b); });
+  return sum[1] > 0 ? std::sqrt(sum[0] / sum[1]) : *middle;
 }
 
 /*!

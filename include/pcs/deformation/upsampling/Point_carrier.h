@@ -75,7 +75,7 @@ public:
     thread_local std::vector<double> weight;
     if (m_rings.empty()) {
       find_near_sites(point, site, nearest);
-      if (!(nearest.front().distance > 0))
+      if (!(nearest.front().squared_distance > 0))
         return maps[nearest.front().sample];
       interpolation_weights(nearest, m_k, weight);
     } else {
@@ -121,11 +121,10 @@ private:
                                     std::vector<double>& weight)
   {
     internal::sample_weights(nearest, Sample_weights::compact, k, weight);
-    const double least = nearest.front().distance;
+    const double least = nearest.front().squared_distance;
     double sum = 0;
     for (std::size_t b = 0; b < weight.size(); ++b) {
-      const double ratio = least / nearest[b].distance;
-      weight[b] *= ratio * ratio;
+      weight[b] *= least / nearest[b].squared_distance;
       sum += weight[b];
     }
     for (double& w : weight)
