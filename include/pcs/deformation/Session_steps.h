@@ -61,7 +61,7 @@ void prepare_points(Session_state<Tag>& s)
   const pcs::internal::Stage_timer timer(s.report.seconds.sampling);
   const auto row = [&](std::size_t place) { return s.body.site_of_place[place]; };
   s.border_finder = Border_finder(s.body.site_graph);
-  s.upsampling = Upsampling(s.body.number_of_points(), row, s.body.links_of_site);
+  s.upsampling = Upsampling::build<Tag>(s.body.number_of_points(), row, s.body.links_of_site);
   s.body.links_of_site = Sample_links();
 }
 

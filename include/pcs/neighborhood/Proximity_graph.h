@@ -117,29 +117,78 @@ Proximity_graph nearest_neighbor_graph(const std::vector<Vec3>& points, std::siz
   return graph;
 }
 
-/// Returns the component of every vertex; components are numbered by their smallest vertex. `count`
-/// receives their number.
-inline std::vector<std::uint32_t> connected_components(const Proximity_graph& graph,
-                                                       std::size_t& count)
+namespace internal {
+
+/// Disjoint sets of vertices. The root of a set is its smallest vertex.
+class Vertex_sets
 {
-  constexpr std::uint32_t unseen = ~std::uint32_t(0);
-  std::vector<std::uint32_t> component(graph.size(), unseen), stack;
-  count = 0;
-  for (std::size_t i = 0; i < graph.size(); ++i) {
-    if (component[i] != unseen)
-      continue;
-    const auto c = static_cast<std::uint32_t>(count++);
-    component[i] = c;
-    stack.push_back(static_cast<std::uint32_t>(i));
-    while (!stack.empty()) {
-      const std::uint32_t v = stack.back();
-      stack.pop_back();
-      for (auto j = graph.begin(v); j != graph.end(v); ++j)
-        if (component[*j] == unseen) {
-          component[*j] = c;
-          stack.push_back(*j);
+public:
+  template <class ConcurrencyTag>
+  static Vertex_sets of_singles(std::size_t n)
+  {
+    Vertex_sets sets;
+    sets.m_parent.resize(n);
+    pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t i) {
+      sets.m_parent[i] = static_cast<std::uint32_t>(i);
+    });
+    return sets;
+  }
+
+  std::uint32_t root(std::uint32_t i)
+  {
+    while (m_parent[i] != i)
+      i = m_parent[i] = m_parent[m_parent[i]];
+    return i;
+  }
+
+  void join(std::uint32_t i, std::uint32_t j)
+  {
+    i = root(i);
+    j = root(j);
+    m_parent[std::max(i, j)] = std::min(i, j);
+  }
+
+  std::uint32_t parent(std::size_t i) const { return m_parent[i]; }
+
+private:
+  std::vector<std::uint32_t> m_parent;
+};
+
+} // namespace internal
+
+/// Returns the component of every vertex; components are numbered by their smallest vertex. `count`
+/// receives their number. Blocks of consecutive vertices are searched concurrently.
+template <class ConcurrencyTag = CGAL::Sequential_tag>
+std::vector<std::uint32_t> connected_components(const Proximity_graph& graph, std::size_t& count)
+{
+  constexpr std::size_t block_size = 16384;
+  const std::size_t n = graph.size(), number_of_blocks = (n + block_size - 1) / block_size;
+  auto sets = internal::Vertex_sets::of_singles<ConcurrencyTag>(n);
+  std::vector<std::vector<std::uint32_t>> crossing(number_of_blocks); // vertices with other edges
+  pcs::internal::for_each_block<ConcurrencyTag>(
+      n,
+      block_size,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          bool is_crossing = false;
+          for (auto j = graph.begin(i); j != graph.end(i) && *j < i; ++j)
+            if (*j >= begin)
+              sets.join(static_cast<std::uint32_t>(i), *j);
+            else
+              is_crossing = true;
+          if (is_crossing)
+            crossing[begin / block_size].push_back(static_cast<std::uint32_t>(i));
         }
-    }
+      });
+  for (std::size_t b = 0; b < number_of_blocks; ++b)
+    for (const std::uint32_t i : crossing[b])
+      for (auto j = graph.begin(i); j != graph.end(i) && *j < b * block_size; ++j)
+        sets.join(i, *j);
+  count = 0;
+  std::vector<std::uint32_t> component(n);
+  for (std::size_t i = 0; i < n; ++i) { // a parent has a smaller number
+    const std::uint32_t parent = sets.parent(i);
+    component[i] = parent == i ? static_cast<std::uint32_t>(count++) : component[parent];
   }
   return component;
 }

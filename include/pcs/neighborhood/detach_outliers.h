@@ -8,6 +8,7 @@
 #include <pcs/internal/median.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/neighborhood/Proximity_graph.h>
+#include <pcs/neighborhood/median_link.h>
 
 #include <Eigen/Core>
 
@@ -34,18 +35,6 @@ struct Outlier
 
 namespace internal {
 
-/// Returns the upper median of the lengths of the links of a point. `lengths` is a buffer.
-inline double median_link(const std::vector<Eigen::Vector3d>& points,
-                          const Proximity_graph& graph,
-                          std::size_t i,
-                          std::vector<double>& lengths)
-{
-  lengths.clear();
-  for (auto j = graph.begin(i); j != graph.end(i); ++j)
-    lengths.push_back((points[*j] - points[i]).norm());
-  return pcs::internal::upper_median(lengths);
-}
-
 /// Returns the length of the shortest link of each point, 0 without links.
 template <class ConcurrencyTag>
 std::vector<double> shortest_links(const std::vector<Eigen::Vector3d>& points,
@@ -71,7 +60,7 @@ std::vector<char> mark_outliers(const std::vector<Eigen::Vector3d>& points,
   const std::vector<double> shortest = shortest_links<ConcurrencyTag>(points, graph);
   std::vector<char> is_outlier(n, 0);
   pcs::internal::for_each_block<ConcurrencyTag>(n, 512, [&](std::size_t begin, std::size_t end) {
-    std::vector<double> spacings, lengths;
+    std::vector<double> spacings;
     for (std::size_t i = begin; i < end; ++i) {
       const double longest = shortest[i] / smallest_outlier_gap;
       // medians of links are at least the shortest links, which excludes nearly all points
@@ -82,7 +71,7 @@ std::vector<char> mark_outliers(const std::vector<Eigen::Vector3d>& points,
         continue;
       spacings.clear();
       for (auto j = graph.begin(i); j != graph.end(i); ++j)
-        spacings.push_back(median_link(points, graph, *j, lengths));
+        spacings.push_back(median_link(points, graph, *j));
       is_outlier[i] = shortest[i] > smallest_outlier_gap * pcs::internal::upper_median(spacings);
     }
   });

@@ -17,7 +17,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <tuple>
 #include <utility>
@@ -220,22 +219,18 @@ inline void (*choose_find_normals())(const Block_moments&, Surface_normal*)
   return &find_normals_plain;
 }
 
-/// Returns the inverse of the root mean square length of the edges. It keeps their squares in the
-/// range of a float.
-template <class ConcurrencyTag>
-double unit_of_edges(const std::vector<Vec3>& points, const Proximity_graph& graph)
+/// Returns the inverse of the root mean square length of the edges of some points. Lengths in this
+/// unit have squares in the range of a float.
+inline double unit_of_edges(const std::vector<Vec3>& points, const Proximity_graph& graph)
 {
-  const double sum = pcs::internal::blocked_reduce<ConcurrencyTag>(
-      points.size(),
-      0.0,
-      [&](std::size_t i) {
-        double squares = 0;
-        for (auto j = graph.begin(i); j != graph.end(i); ++j)
-          squares += (points[*j] - points[i]).squaredNorm();
-        return squares;
-      },
-      std::plus<double>());
-  return sum > 0 ? std::sqrt(static_cast<double>(graph.neighbor.size()) / sum) : 1;
+  constexpr std::size_t stride = 16;
+  double sum = 0, count = 0;
+  for (std::size_t i = 0; i < points.size(); i += stride)
+    for (auto j = graph.begin(i); j != graph.end(i); ++j) {
+      sum += (points[*j] - points[i]).squaredNorm();
+      count += 1;
+    }
+  return sum > 0 ? std::sqrt(count / sum) : 1;
 }
 
 PCS_ALWAYS_INLINE pcs::internal::Float4
@@ -269,7 +264,7 @@ template <class ConcurrencyTag>
 pcs::internal::Huge_vector<Surface_normal> surface_normals(const std::vector<Vec3>& points,
                                                            const Proximity_graph& graph)
 {
-  const double scale = unit_of_edges<ConcurrencyTag>(points, graph);
+  const double scale = unit_of_edges(points, graph);
   const auto ring = ring_moments<ConcurrencyTag>(points, graph, scale);
   const auto find_normals = choose_find_normals();
   constexpr std::size_t block = Block_moments::size;

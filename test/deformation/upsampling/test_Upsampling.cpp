@@ -75,7 +75,7 @@ struct Setup
                                                                  pcs::Sample_weights::compact);
     sample_points = pcs_test::permuted(points, samples);
     rest = pcs::deformation::Point_blocks(points.size(), [&](std::size_t i) { return points[i]; });
-    upsampling = pcs::deformation::Upsampling(
+    upsampling = pcs::deformation::Upsampling::build(
         points.size(),
         [](std::size_t i) { return i; },
         links);

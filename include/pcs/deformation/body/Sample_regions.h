@@ -72,7 +72,7 @@ public:
                Keys& keys)
     : m_points(points),
       m_graph(graph),
-      m_scale(scale),
+      m_squared_scale(scale * scale),
       m_keys(keys),
       m_head(largest_edge_steps + 1, none)
   {
@@ -131,11 +131,11 @@ private:
     return value < old;
   }
 
-  /// Returns the length of an edge, rounded, at least 1 and at most `largest_edge_steps`.
-  Region_key steps(std::size_t i, std::size_t j) const
+  /// Returns a length in steps, rounded, at least 1 and at most `largest_edge_steps`. `squared` is
+  /// the squared length in steps.
+  static Region_key rounded_steps(double squared)
   {
-    const double length =
-        std::min(m_scale * (m_points[j] - m_points[i]).norm(), double(largest_edge_steps));
+    const double length = std::min(std::sqrt(squared), double(largest_edge_steps));
     const auto whole = static_cast<Region_key>(length);
     return std::max<Region_key>(whole + (length - static_cast<double>(whole) >= 0.5 ? 1 : 0), 1);
   }
@@ -153,9 +153,15 @@ private:
       return;
     const auto sample = static_cast<std::uint32_t>(from);
     for (auto j = m_graph.begin(i); j != m_graph.end(i); ++j) {
-      if (key(*j) <= from) // an edge has at least one step
+      const Region_key before = key(*j);
+      if (before <= from) // an edge has at least one step
         continue;
-      const Region_key through_i = d + steps(i, *j);
+      const double squared = m_squared_scale * (m_points[*j] - m_points[i]).squaredNorm();
+      // Without a root: edges of half a step more than the difference reach `j` later.
+      const double difference = static_cast<double>(distance(before) - distance(from)) + 0.5;
+      if (squared > (1 + 1e-9) * difference * difference && difference < largest_edge_steps)
+        continue;
+      const Region_key through_i = d + rounded_steps(squared);
       if (!lower(*j, region_key(through_i, sample)))
         continue;
       if (*j < begin || *j >= end) {
@@ -171,7 +177,7 @@ private:
 
   const std::vector<Vec3>& m_points;
   const neighborhood::Proximity_graph& m_graph;
-  double m_scale;
+  double m_squared_scale;
   Keys& m_keys;
   std::vector<std::uint32_t> m_head; ///< first entry of each distance
   std::vector<Entry> m_entries;
@@ -194,7 +200,7 @@ Sample_regions grow_regions(const std::vector<Vec3>& points,
                             const std::vector<std::uint32_t>& samples)
 {
   using Block = internal::Region_block<ConcurrencyTag>;
-  constexpr std::size_t block_size = 4096;
+  constexpr std::size_t block_size = 16384;
   const double edge = typical_edge<ConcurrencyTag>(points, graph);
   const double scale = edge > 0 ? steps_per_edge / edge : 1;
   const std::size_t n = points.size(), number_of_blocks = (n + block_size - 1) / block_size;
@@ -241,17 +247,50 @@ Sample_regions grow_regions(const std::vector<Vec3>& points,
   return regions;
 }
 
-/// Length that an edge adds to the border that it crosses: at most the spacing, so that outliers
-/// count little. [L]
-inline double crossing_length(const std::vector<Vec3>& points,
-                              const neighborhood::Proximity_graph& graph,
-                              std::size_t i,
-                              std::size_t j)
+namespace internal {
+
+/// An edge between the regions of two samples.
+struct Region_crossing
 {
-  return std::min({(points[j] - points[i]).norm(),
-                   local_spacing(points, graph, i),
-                   local_spacing(points, graph, j)});
+  std::uint32_t from, to; ///< samples
+  /// Length that the edge adds to the border that it crosses: at most the spacing, so that outliers
+  /// count little. [L]
+  double length;
+};
+
+/// Returns the edges between regions, in the order of the rows of the graph.
+template <class ConcurrencyTag>
+std::vector<Region_crossing> region_crossings(const std::vector<Vec3>& points,
+                                              const neighborhood::Proximity_graph& graph,
+                                              const std::vector<std::uint32_t>& label)
+{
+  constexpr std::size_t block_size = 8192;
+  std::vector<std::vector<Region_crossing>> found((points.size() + block_size - 1) / block_size);
+  const auto find = [&](std::size_t begin, std::size_t end) {
+    auto& crossings = found[begin / block_size];
+    for (std::size_t i = begin; i < end; ++i) {
+      double spacing = -1;
+      for (auto j = graph.begin(i); j != graph.end(i); ++j) {
+        if (label[i] == label[*j] || label[i] == no_sample)
+          continue;
+        if (spacing < 0)
+          spacing = local_spacing(points, graph, i);
+        crossings.push_back(
+            {label[i],
+             label[*j],
+             std::min(
+                 {(points[*j] - points[i]).norm(), spacing, local_spacing(points, graph, *j)})});
+      }
+    }
+  };
+  pcs::internal::for_each_block<ConcurrencyTag>(points.size(), block_size, find);
+  std::vector<Region_crossing> crossings;
+  for (const auto& block : found)
+    crossings.insert(crossings.end(), block.begin(), block.end());
+  return crossings;
 }
+
+} // namespace internal
 
 /// Edges to outliers get weights that fall with the square of their length: fits weigh an edge by
 /// its weight times its squared length, which must not grow without bound. Returns the sum of the
@@ -292,23 +331,17 @@ inline double damp_long_edges(const std::vector<Vec3>& points,
   the edges that cross it, each limited to the local spacing. `weight_unit` receives the weight of
   an edge whose border is as long as itself.
 */
-inline Weighted_graph sample_graph(const std::vector<Vec3>& points,
-                                   const neighborhood::Proximity_graph& graph,
-                                   const std::vector<std::uint32_t>& samples,
-                                   const Sample_regions& regions,
-                                   double& weight_unit)
+template <class ConcurrencyTag = CGAL::Sequential_tag>
+Weighted_graph sample_graph(const std::vector<Vec3>& points,
+                            const neighborhood::Proximity_graph& graph,
+                            const std::vector<std::uint32_t>& samples,
+                            const Sample_regions& regions,
+                            double& weight_unit)
 {
-  struct Crossing
-  {
-    std::uint32_t from, to; // samples
-    double length;
-  };
-  std::vector<Crossing> crossings, ordered;
-  const auto& label = regions.sample_of_point;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    for (auto j = graph.begin(i); j != graph.end(i); ++j)
-      if (label[i] != label[*j] && label[i] != no_sample)
-        crossings.push_back({label[i], label[*j], crossing_length(points, graph, i, *j)});
+  using Crossing = internal::Region_crossing;
+  const std::vector<Crossing> crossings =
+      internal::region_crossings<ConcurrencyTag>(points, graph, regions.sample_of_point);
+  std::vector<Crossing> ordered;
   const auto first = pcs::internal::compress_rows<std::size_t>(
       samples.size(),
       crossings.size(),

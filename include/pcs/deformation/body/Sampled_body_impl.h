@@ -95,12 +95,14 @@ template <class ConcurrencyTag>
 Vec3 Sampled_body<ConcurrencyTag>::median_point(const std::vector<Vec3>& points)
 {
   Vec3 median;
-  std::vector<double> values(points.size());
-  for (int c = 0; c < 3; ++c) {
+  const auto find = [&](int c) {
+    std::vector<double> values(points.size());
     for (std::size_t i = 0; i < points.size(); ++i)
       values[i] = points[i][c];
     median[c] = pcs::internal::upper_median(values);
-  }
+  };
+  pcs::internal::invoke_both<ConcurrencyTag>([&] { find(0); }, [&] { find(1); });
+  find(2);
   return median;
 }
 
@@ -157,12 +159,13 @@ void Sampled_body<ConcurrencyTag>::number_places(const std::vector<Vec3>& points
                                                  std::size_t number_of_sites)
 {
   const std::size_t n = points.size();
-  is_in_callers_order = is_coherent_order(points, input_of_place);
+  is_in_callers_order = is_coherent_order<ConcurrencyTag>(points, input_of_place);
   if (is_in_callers_order)
     std::iota(input_of_place.begin(), input_of_place.end(), 0u);
   site_of_place.resize(n);
-  for (std::size_t place = 0; place < n; ++place)
+  pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t place) {
     site_of_place[place] = site_of_input[input_of_place[place]];
+  });
   if (number_of_sites == n && !is_in_callers_order)
     return;
   place_of_site.resize(number_of_sites);
@@ -174,7 +177,7 @@ template <class ConcurrencyTag>
 void Sampled_body<ConcurrencyTag>::find_components(const neighborhood::Proximity_graph& graph)
 {
   std::size_t count = 0;
-  component_of_site = neighborhood::connected_components(graph, count);
+  component_of_site = neighborhood::connected_components<ConcurrencyTag>(graph, count);
   component_size.assign(count, 0);
   for (const auto site : site_of_place)
     ++component_size[component_of_site[site]];
@@ -197,8 +200,9 @@ template <class ConcurrencyTag>
 void Sampled_body<ConcurrencyTag>::choose_samples(const std::vector<Vec3>& sites)
 {
   if (outliers.empty() || options.number_of_samples >= sites.size())
-    site_of_sample =
-        octree_samples(sites, options.number_of_samples, internal::is_resolving(options));
+    site_of_sample = octree_samples<ConcurrencyTag>(sites,
+                                                    options.number_of_samples,
+                                                    internal::is_resolving(options));
   else
     choose_samples_without_outliers(sites);
 }
@@ -228,8 +232,9 @@ void Sampled_body<ConcurrencyTag>::choose_samples_without_outliers(const std::ve
   std::vector<Vec3> ordered(others.size());
   for (std::size_t i = 0; i < order.size(); ++i)
     ordered[i] = others[order[i]];
-  site_of_sample =
-      octree_samples(ordered, options.number_of_samples, internal::is_resolving(options));
+  site_of_sample = octree_samples<ConcurrencyTag>(ordered,
+                                                  options.number_of_samples,
+                                                  internal::is_resolving(options));
   for (auto& s : site_of_sample)
     s = kept[order[s]];
   std::sort(site_of_sample.begin(), site_of_sample.end());
@@ -276,7 +281,8 @@ bool Sampled_body<ConcurrencyTag>::link_samples(const std::vector<Vec3>& sites,
                                                 pcs::internal::Progress& progress)
 {
   Sample_regions regions = grow_regions<ConcurrencyTag>(sites, graph, site_of_sample);
-  network.surface = sample_graph(sites, graph, site_of_sample, regions, weight_unit);
+  network.surface =
+      sample_graph<ConcurrencyTag>(sites, graph, site_of_sample, regions, weight_unit);
   if (internal::is_resolving(options))
     weigh_by_cells(sites);
   if (!progress(internal::end_of_sample_graph))
@@ -336,7 +342,7 @@ bool Sampled_body<ConcurrencyTag>::sample(const std::vector<Vec3>& sites,
     return false;
   link_interior(component_of_sample());
   const auto rest = [&](std::size_t place) { return sites[site_of_place[place]]; };
-  rest_points = Point_blocks(number_of_points(), rest);
+  rest_points = Point_blocks::of<ConcurrencyTag>(number_of_points(), rest);
   return progress(1);
 }
 

@@ -7,10 +7,14 @@
 
 #include <pcs/deformation/model/Elastic_network.h>
 #include <pcs/deformation/model/Point_blocks.h>
+#include <pcs/internal/parallel.h>
+
+#include <CGAL/tags.h>
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace pcs {
@@ -29,8 +33,9 @@ constexpr double largest_incoherent_share = 0.1;
   \param points in the caller's order
   \param spatial_order indices of the points in an order that keeps neighbours close together
 */
-inline bool is_coherent_order(const std::vector<Vec3>& points,
-                              const std::vector<std::uint32_t>& spatial_order)
+template <class ConcurrencyTag = CGAL::Sequential_tag>
+bool is_coherent_order(const std::vector<Vec3>& points,
+                       const std::vector<std::uint32_t>& spatial_order)
 {
   const std::size_t number_of_blocks = points.size() / lanes;
   const auto squared_extent = [&](std::size_t block, const auto& point_at) {
@@ -43,23 +48,26 @@ inline bool is_coherent_order(const std::vector<Vec3>& points,
   };
   // The extent of the block of the spatial order that contains the first point of each block.
   std::vector<float> spatial(number_of_blocks, -1);
-  for (std::size_t block = 0; block < number_of_blocks; ++block) {
+  pcs::internal::for_each_index<ConcurrencyTag>(number_of_blocks, [&](std::size_t block) {
     const double extent = squared_extent(block, [&](std::size_t place) -> const Vec3& {
       return points[spatial_order[place]];
     });
     for (std::size_t l = 0; l < lanes; ++l) {
       const std::uint32_t i = spatial_order[block * lanes + l];
       if (i % lanes == 0 && i / lanes < number_of_blocks)
-        spatial[i / lanes] = static_cast<float>(extent);
+        spatial[i / lanes] = static_cast<float>(extent); // of one point each
     }
-  }
+  });
   constexpr double largest_square = largest_coherent_ratio * largest_coherent_ratio;
-  std::size_t count = 0;
-  for (std::size_t block = 0; block < number_of_blocks; ++block) {
-    const double extent =
-        squared_extent(block, [&](std::size_t i) -> const Vec3& { return points[i]; });
-    count += extent > largest_square * static_cast<double>(spatial[block]) ? 1 : 0;
-  }
+  const std::size_t count = pcs::internal::blocked_reduce<ConcurrencyTag>(
+      number_of_blocks,
+      std::size_t(0),
+      [&](std::size_t block) -> std::size_t {
+        const double extent =
+            squared_extent(block, [&](std::size_t i) -> const Vec3& { return points[i]; });
+        return extent > largest_square * static_cast<double>(spatial[block]) ? 1 : 0;
+      },
+      std::plus<std::size_t>());
   return static_cast<double>(count) <=
          largest_incoherent_share * static_cast<double>(number_of_blocks);
 }

@@ -5,7 +5,10 @@
 #ifndef PCS_DEFORMATION_BODY_OCTREE_SAMPLES_H
 #define PCS_DEFORMATION_BODY_OCTREE_SAMPLES_H
 
+#include <pcs/internal/parallel.h>
 #include <pcs/neighborhood/spatial_order.h>
+
+#include <CGAL/tags.h>
 
 #include <Eigen/Core>
 
@@ -93,6 +96,23 @@ inline std::vector<Octree_range> halve_range(const std::vector<Eigen::Vector3d>&
   return {{range.begin, range.begin + half}, {range.begin + half, range.end}};
 }
 
+/// Returns the point nearest to the centroid of a leaf.
+inline std::uint32_t central_point(const std::vector<Eigen::Vector3d>& points,
+                                   const Octree_range& leaf,
+                                   const std::vector<std::uint32_t>& order)
+{
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
+  for (std::size_t k = leaf.begin; k < leaf.end; ++k)
+    centroid += points[order[k]];
+  centroid /= static_cast<double>(leaf.size());
+  std::uint32_t nearest = order[leaf.begin];
+  for (std::size_t k = leaf.begin + 1; k < leaf.end; ++k)
+    if ((points[order[k]] - centroid).squaredNorm() <
+        by_far * (points[nearest] - centroid).squaredNorm())
+      nearest = order[k];
+  return nearest;
+}
+
 } // namespace internal
 
 /*!
@@ -104,9 +124,10 @@ inline std::vector<Octree_range> halve_range(const std::vector<Eigen::Vector3d>&
   \param points distinct points, in the order of `neighborhood::spatial_order()`
   \param is_even whether small leaves are split into halves
 */
-inline std::vector<std::uint32_t> octree_samples(const std::vector<Eigen::Vector3d>& points,
-                                                 std::size_t number_of_samples,
-                                                 bool is_even = false)
+template <class ConcurrencyTag = CGAL::Sequential_tag>
+std::vector<std::uint32_t> octree_samples(const std::vector<Eigen::Vector3d>& points,
+                                          std::size_t number_of_samples,
+                                          bool is_even = false)
 {
   using internal::Octree_range;
   const std::size_t n = points.size();
@@ -144,19 +165,14 @@ inline std::vector<std::uint32_t> octree_samples(const std::vector<Eigen::Vector
     for (const Octree_range& child : children)
       leaves.push(child);
   }
-  for (; !leaves.empty(); leaves.pop()) {
-    const Octree_range leaf = leaves.top();
-    Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
-    for (std::size_t k = leaf.begin; k < leaf.end; ++k)
-      centroid += points[order[k]];
-    centroid /= static_cast<double>(leaf.size());
-    std::uint32_t nearest = order[leaf.begin];
-    for (std::size_t k = leaf.begin + 1; k < leaf.end; ++k)
-      if ((points[order[k]] - centroid).squaredNorm() <
-          by_far * (points[nearest] - centroid).squaredNorm())
-        nearest = order[k];
-    samples.push_back(nearest);
-  }
+  std::vector<Octree_range> ranges;
+  for (; !leaves.empty(); leaves.pop())
+    ranges.push_back(leaves.top());
+  samples.resize(ranges.size());
+  pcs::internal::for_each_index<ConcurrencyTag>(
+      ranges.size(),
+      [&](std::size_t s) { samples[s] = internal::central_point(points, ranges[s], order); },
+      64);
   std::sort(samples.begin(), samples.end());
   return samples;
 }

@@ -7,18 +7,17 @@
 
 #include <pcs/internal/parallel.h>
 #include <pcs/neighborhood/Proximity_graph.h>
+#include <pcs/neighborhood/median_link.h>
 
 #include <CGAL/tags.h>
 
 #include <Eigen/Core>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <vector>
 
 namespace pcs {
@@ -60,66 +59,13 @@ inline double representable_weight(double w)
   return std::isfinite(w) ? std::min(1e9, std::max(1e-30, w)) : 1;
 }
 
-namespace internal {
-
-/// Sorts two values, without a branch.
-inline void sort_two(double& a, double& b)
-{
-  const double smaller = std::min(a, b);
-  b = std::max(a, b);
-  a = smaller;
-}
-
-/// Sorts eight values by a network, which has no branches.
-inline void sort_eight(double* v)
-{
-  constexpr int pairs[][2] = {{0, 2},
-                              {1, 3},
-                              {4, 6},
-                              {5, 7},
-                              {0, 4},
-                              {1, 5},
-                              {2, 6},
-                              {3, 7},
-                              {0, 1},
-                              {2, 3},
-                              {4, 5},
-                              {6, 7},
-                              {2, 4},
-                              {3, 5},
-                              {1, 4},
-                              {3, 6},
-                              {1, 2},
-                              {3, 4},
-                              {5, 6}};
-  for (const auto& pair : pairs)
-    sort_two(v[pair[0]], v[pair[1]]);
-}
-
-} // namespace internal
-
 /// Returns the spacing at node `i`: the median length of its edges, which is robust against a
 /// single outlier. [L]
 inline double local_spacing(const std::vector<Vec3>& rest,
                             const neighborhood::Proximity_graph& graph,
                             std::size_t i)
 {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  std::array<double, 64> squares;
-  const std::size_t count = std::min(squares.size(), graph.degree(i));
-  if (count == 0)
-    return 0;
-  for (std::size_t e = 0; e < count; ++e)
-    squares[e] = (rest[graph.begin(i)[e]] - rest[i]).squaredNorm();
-  if (count <= 8) {
-    for (std::size_t e = count; e < 8; ++e)
-      squares[e] = infinity;
-    internal::sort_eight(squares.data());
-  } else
-    std::nth_element(squares.begin(),
-                     squares.begin() + static_cast<std::ptrdiff_t>(count / 2),
-                     squares.begin() + static_cast<std::ptrdiff_t>(count));
-  return std::sqrt(squares[count / 2]);
+  return neighborhood::median_link(rest, graph, i);
 }
 
 /// Sets `area` from the spacings; \p component holds the component of each node.

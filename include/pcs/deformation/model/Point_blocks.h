@@ -7,6 +7,9 @@
 
 #include <pcs/deformation/model/Affine_map.h>
 #include <pcs/internal/Huge_page_allocator.h>
+#include <pcs/internal/parallel.h>
+
+#include <CGAL/tags.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -45,6 +48,16 @@ public:
     set_positions(position);
   }
 
+  /// The same, with concurrent calls of `position`.
+  template <class ConcurrencyTag, class Vector_at>
+  static Point_blocks of(std::size_t n, const Vector_at& position)
+  {
+    Point_blocks result;
+    result.m_size = n;
+    result.pack<ConcurrencyTag>(position, result.m_positions);
+    return result;
+  }
+
   std::size_t size() const { return m_size; }
   std::size_t number_of_blocks() const { return (m_size + lanes - 1) / lanes; }
   bool has_normals() const { return !m_normals.empty(); }
@@ -52,12 +65,12 @@ public:
   template <class Vector_at>
   void set_positions(const Vector_at& position)
   {
-    pack(position, m_positions);
+    pack<CGAL::Sequential_tag>(position, m_positions);
   }
   template <class Vector_at>
   void set_normals(const Vector_at& normal)
   {
-    pack(normal, m_normals);
+    pack<CGAL::Sequential_tag>(normal, m_normals);
   }
 
   Vec3 position(std::size_t i) const { return lane(m_positions, i); }
@@ -70,15 +83,17 @@ public:
 private:
   using Blocks = pcs::internal::Huge_vector<Lane_vectors>;
 
-  template <class Vector_at>
+  template <class ConcurrencyTag, class Vector_at>
   void pack(const Vector_at& vector, Blocks& packed) const
   {
     packed.resize(number_of_blocks());
-    for (std::size_t i = 0; i < packed.size() * lanes; ++i) {
-      const Vec3 v = vector(std::min(i, m_size - 1));
-      for (int c = 0; c < 3; ++c)
-        packed[i / lanes].value[c][i % lanes] = v[c];
-    }
+    pcs::internal::for_each_index<ConcurrencyTag>(packed.size(), [&](std::size_t block) {
+      for (std::size_t l = 0; l < lanes; ++l) {
+        const Vec3 v = vector(std::min(block * lanes + l, m_size - 1));
+        for (int c = 0; c < 3; ++c)
+          packed[block].value[c][l] = v[c];
+      }
+    });
   }
 
   static Vec3 lane(const Blocks& vectors, std::size_t i)

@@ -18,6 +18,8 @@
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/streaming_stores.h>
 
+#include <CGAL/tags.h>
+
 #include <Eigen/Core>
 
 #include <algorithm>
@@ -42,18 +44,26 @@ public:
 
   /// \param n number of points; points with consecutive indices should be near each other
   /// \param row `row(i)` is the row of `links` that applies to point `i` in `[0, n)`
-  template <class Row_at>
-  Upsampling(std::size_t n, const Row_at& row, const Sample_links& links)
+  template <class ConcurrencyTag = CGAL::Sequential_tag, class Row_at>
+  static Upsampling build(std::size_t n, const Row_at& row, const Sample_links& links)
   {
     const std::size_t number_of_blocks = (n + lanes - 1) / lanes;
-    m_first.push_back(0);
-    m_base.reserve(number_of_blocks);
-    std::unordered_map<std::uint64_t, std::uint32_t> pair_index; // never iterated over
-    std::vector<Member> members;
-    for (std::size_t block = 0; block < number_of_blocks; ++block) {
-      find_members(block, n, row, links, members);
-      add_block(members, pair_index);
-    }
+    std::vector<Part> parts((number_of_blocks + blocks_of_part - 1) / blocks_of_part);
+    pcs::internal::for_each_block<ConcurrencyTag>(number_of_blocks,
+                                                  blocks_of_part,
+                                                  [&](std::size_t begin, std::size_t end) {
+                                                    Part& part = parts[begin / blocks_of_part];
+                                                    std::vector<Member> members;
+                                                    for (std::size_t block = begin; block < end;
+                                                         ++block) {
+                                                      find_members(block, n, row, links, members);
+                                                      part.add_block(members);
+                                                    }
+                                                    part.pair_index.clear();
+                                                  });
+    Upsampling result;
+    result.join<ConcurrencyTag>(parts);
+    return result;
   }
 
   /// Points and samples at rest, and the maps of the samples.
@@ -200,27 +210,76 @@ private:
     return base;
   }
 
-  void add_block(const std::vector<Member>& members,
-                 std::unordered_map<std::uint64_t, std::uint32_t>& pair_index)
+  /// Consecutive blocks, which are prepared together.
+  struct Part
   {
-    const std::size_t base = find_base(members);
-    m_base.push_back(members.empty() ? 0 : members[base].sample);
-    for (std::size_t u = 0; u < members.size(); ++u) {
-      if (u == base)
-        continue;
-      const Sample_pair pair{m_base.back(), members[u].sample};
-      const std::uint64_t key = std::uint64_t(pair.base) << 32 | pair.sample;
-      const auto [found, is_new] =
-          pair_index.emplace(key, static_cast<std::uint32_t>(m_pairs.size()));
-      if (is_new)
-        m_pairs.push_back(pair);
-      Block_entry entry{found->second, {}};
-      for (std::size_t l = 0; l < lanes; ++l)
-        entry.weight[l] = static_cast<std::uint16_t>(
-            std::lround(weight_steps * static_cast<double>(members[u].weight[l])));
-      m_entry.push_back(entry);
+    std::vector<std::uint32_t> base, end; ///< of each block; `end` counts the entries of the part
+    std::vector<Block_entry> entry;       ///< with indices of `pairs`
+    std::vector<Sample_pair> pairs;
+    std::unordered_map<std::uint64_t, std::uint32_t> pair_index; // never iterated over
+
+    void add_block(const std::vector<Member>& members)
+    {
+      const std::size_t b = find_base(members);
+      base.push_back(members.empty() ? 0 : members[b].sample);
+      for (std::size_t u = 0; u < members.size(); ++u) {
+        if (u == b)
+          continue;
+        Block_entry added{index_of_pair({base.back(), members[u].sample}, pair_index, pairs), {}};
+        for (std::size_t l = 0; l < lanes; ++l)
+          added.weight[l] = static_cast<std::uint16_t>(
+              weight_steps * static_cast<double>(members[u].weight[l]) + 0.5);
+        entry.push_back(added);
+      }
+      end.push_back(static_cast<std::uint32_t>(entry.size()));
     }
-    m_first.push_back(static_cast<std::uint32_t>(m_entry.size()));
+  };
+  static constexpr std::size_t blocks_of_part = 2048;
+
+  /// Returns the index of a pair in `pairs`, to which new pairs are appended.
+  static std::uint32_t index_of_pair(const Sample_pair& pair,
+                                     std::unordered_map<std::uint64_t, std::uint32_t>& pair_index,
+                                     std::vector<Sample_pair>& pairs)
+  {
+    const std::uint64_t key = std::uint64_t(pair.base) << 32 | pair.sample;
+    const auto [found, is_new] = pair_index.emplace(key, static_cast<std::uint32_t>(pairs.size()));
+    if (is_new)
+      pairs.push_back(pair);
+    return found->second;
+  }
+
+  /// Appends all parts. Pairs are numbered in the order of the blocks.
+  template <class ConcurrencyTag>
+  void join(std::vector<Part>& parts)
+  {
+    std::unordered_map<std::uint64_t, std::uint32_t> pair_index;
+    std::vector<std::vector<std::uint32_t>> index_of(parts.size()); // of the pairs of a part
+    std::vector<std::size_t> first_block(1, 0), first_entry(1, 0);
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      for (const Sample_pair& pair : parts[p].pairs)
+        index_of[p].push_back(index_of_pair(pair, pair_index, m_pairs));
+      first_block.push_back(first_block.back() + parts[p].base.size());
+      first_entry.push_back(first_entry.back() + parts[p].entry.size());
+    }
+    m_base.resize(first_block.back());
+    m_first.assign(first_block.back() + 1, 0);
+    m_entry.resize(first_entry.back());
+    pcs::internal::for_each_index<ConcurrencyTag>(
+        parts.size(),
+        [&](std::size_t p) {
+          Part& part = parts[p];
+          for (std::size_t block = 0; block < part.base.size(); ++block) {
+            m_base[first_block[p] + block] = part.base[block];
+            m_first[first_block[p] + block + 1] =
+                static_cast<std::uint32_t>(first_entry[p] + part.end[block]);
+          }
+          for (std::size_t e = 0; e < part.entry.size(); ++e) {
+            m_entry[first_entry[p] + e] = part.entry[e];
+            m_entry[first_entry[p] + e].pair = index_of[p][part.entry[e].pair];
+          }
+          part = Part();
+        },
+        1);
   }
 
   /// Computes the maps of the samples as bases, and the map differences between bases and the other
