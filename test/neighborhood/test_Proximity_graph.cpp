@@ -200,6 +200,33 @@ BOOST_AUTO_TEST_CASE(components_are_those_of_repeated_merging)
   }
 }
 
+BOOST_AUTO_TEST_CASE(components_extend_over_all_blocks_of_vertices)
+{
+  // Chains of vertices with the same remainder, each linked to the next in a random order.
+  constexpr std::uint32_t n = 100000, number_of_chains = 7;
+  std::mt19937 random(1);
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
+  for (std::uint32_t chain = 0; chain < number_of_chains; ++chain) {
+    std::vector<std::uint32_t> vertices;
+    for (std::uint32_t v = chain; v < n; v += number_of_chains)
+      vertices.push_back(v);
+    std::shuffle(vertices.begin(), vertices.end(), random);
+    for (std::size_t v = 1; v < vertices.size(); ++v)
+      edges.emplace_back(vertices[v - 1], vertices[v]);
+  }
+  const auto graph = pcs::neighborhood::graph_from_edges(n, edges);
+  for (const int threads : pcs_test::thread_counts)
+    pcs_test::with_threads(threads, [&] {
+      std::size_t count = 0;
+      const auto component = pcs::neighborhood::connected_components<Any_tag>(graph, count);
+      BOOST_TEST(count == number_of_chains);
+      std::size_t faults = 0;
+      for (std::uint32_t v = 0; v < n; ++v)
+        faults += component[v] == v % number_of_chains ? 0 : 1;
+      BOOST_TEST(faults == 0u);
+    });
+}
+
 BOOST_AUTO_TEST_SUITE_END()
 
 } // namespace test_Proximity_graph

@@ -8,6 +8,11 @@
 
 #include <boost/test/unit_test.hpp>
 
+#include <Eigen/Eigenvalues>
+
+#include <cmath>
+#include <random>
+
 namespace test_drop_short_cuts {
 
 namespace {
@@ -62,6 +67,57 @@ BOOST_AUTO_TEST_CASE(a_clump_of_outliers_keeps_a_link)
   BOOST_TEST(number_of_components(graph) == 1u);
   drop_short_cuts<Tag>(points, graph);
   BOOST_TEST(number_of_components(graph) == 1u);
+}
+
+BOOST_AUTO_TEST_CASE(normals_are_the_eigenvectors_of_the_moments)
+{
+  using namespace pcs::neighborhood::internal;
+  std::mt19937 random(2);
+  for (int trial = 0; trial < 500; ++trial) {
+    // eight clouds, from flat ones to balls, lines and single points
+    Block_moments moments;
+    Eigen::Matrix3d matrix[Block_moments::size];
+    for (std::size_t l = 0; l < Block_moments::size; ++l) {
+      const double thickness = trial % 4 == 0 ? 0 : pcs_test::uniform(random);
+      const Vec3 u = pcs_test::random_direction(random), v = pcs_test::random_vector(random);
+      Ring_moments m;
+      for (int p = 0; p < 20; ++p) {
+        const Vec3 d = pcs_test::random_vector(random);
+        Vec3 e = d - (1 - thickness) * u.dot(d) * u;
+        if (trial % 10 == 9)
+          e = l % 2 == 0 ? Vec3(d[0] * v) : Vec3(Vec3::Zero());
+        m.add_point(scaled_edge(Vec3::Zero(), e, 1, 1));
+      }
+      for (std::size_t k = 0; k < 4; ++k)
+        moments.sum[k][l] = m.sum[k];
+      for (std::size_t k = 0; k < 3; ++k) {
+        moments.squares[k][l] = m.squares[k];
+        moments.products[k][l] = m.products[k];
+      }
+      const double xx = m.squares[0], yy = m.squares[1], zz = m.squares[2];
+      const double xy = m.products[0], yz = m.products[1], zx = m.products[2];
+      const Vec3 sum(m.sum[0], m.sum[1], m.sum[2]);
+      matrix[l] << xx, xy, zx, xy, yy, yz, zx, yz, zz;
+      matrix[l] -= sum * sum.transpose() / double(m.sum[3]);
+    }
+    Surface_normal found[Block_moments::size], plain[Block_moments::size];
+    choose_find_normals()(moments, found);
+    find_normals_plain(moments, plain);
+    for (std::size_t l = 0; l < Block_moments::size; ++l) {
+      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(matrix[l]);
+      const Vec3 values = eigen.eigenvalues(), n(found[l][0], found[l][1], found[l][2]);
+      const bool is_wide = values[1] > pcs::neighborhood::smallest_width * values[2];
+      const double confidence =
+          is_wide
+              ? std::max(0.0, 1 - values[0] / (pcs::neighborhood::largest_thickness * values[1]))
+              : 0;
+      BOOST_TEST(std::abs(double(found[l][3]) - confidence) < 1e-5);
+      if (confidence > 0.05)
+        BOOST_TEST(std::abs(n.dot(eigen.eigenvectors().col(0))) > 1 - 1e-6);
+      for (std::size_t k = 0; k < 4; ++k)
+        BOOST_TEST(found[l][k] == plain[l][k]);
+    }
+  }
 }
 
 BOOST_AUTO_TEST_SUITE_END()

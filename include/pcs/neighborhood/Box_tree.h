@@ -23,6 +23,8 @@ struct Tight_box
 {
   Vec3 low, high;
 
+  static Tight_box empty() { return {Vec3::Constant(1), Vec3::Constant(-1)}; }
+
   /// Returns the squared distance of `p` to the box. It is at most the squared distance to any
   /// point of the box, rounding included, if that is summed in the order x, y, z. [L^2]
   double squared_distance(const Vec3& p) const
@@ -40,6 +42,12 @@ struct Tight_box
   {
     return (low[0] <= other.high[0]) & (low[1] <= other.high[1]) & (low[2] <= other.high[2]) &
            (high[0] >= other.low[0]) & (high[1] >= other.low[1]) & (high[2] >= other.low[2]);
+  }
+
+  bool contains(const Vec3& p) const
+  {
+    return (low[0] <= p[0]) & (low[1] <= p[1]) & (low[2] <= p[2]) & (p[0] <= high[0]) &
+           (p[1] <= high[1]) & (p[2] <= high[2]);
   }
 
   /// Returns the box whose points have coordinates that differ by at most `distance`.

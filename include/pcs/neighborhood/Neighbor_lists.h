@@ -72,7 +72,7 @@ public:
   /// Finds the neighbours of the points of a group, and writes them to `lists`.
   void search(const Box_tree::Node& group, Neighbor_lists& lists)
   {
-    double reach = std::min(m_next_reach, bound(group)), reached = -1;
+    double reach = std::min(m_next_reach, first_reach(group)), reached = -1;
     start(group, reach);
     while (true) {
       gather(group, reached, reach);
@@ -108,13 +108,14 @@ private:
     float limit[lanes]; ///< largest squared distance of a neighbour, rounding included
   };
 
-  /// Returns a distance from the box of the group within which there are `k` neighbours of
-  /// each of its points.
-  double bound(const Box_tree::Node& group)
+  /// Guesses the distance from the box of the group within which there are `k` neighbours of each
+  /// of its points.
+  double first_reach(const Box_tree::Node& group)
   {
     const double diagonal = (group.box.high - group.box.low).norm();
-    if (group.end - group.begin > m_k)
-      return distance_tie_factor * diagonal;
+    const std::size_t size = group.end - group.begin;
+    if (size > m_k) // points evenly distributed over a square need less
+      return 1.5 * diagonal / std::sqrt(static_cast<double>(size));
     const std::size_t beside = m_k + 1;
     const std::size_t begin = group.begin - std::min<std::size_t>(group.begin, beside);
     const std::size_t end = std::min(m_points.size(), group.end + beside);
@@ -149,21 +150,23 @@ private:
       m_blocks[b].smallest.assign(lanes * (m_k + 1), std::numeric_limits<float>::infinity());
   }
 
-  /// Adds the points of the leaves that overlap the box of the group grown by `reach`, but not the
-  /// one grown by `reached`.
+  /// Adds the points in the box of the group grown by `reach`, but not those in the box grown by
+  /// `reached`, unless that is negative.
   void gather(const Box_tree::Node& group, double reached, double reach)
   {
-    const Tight_box known = group.box.grown(reached);
-    m_tree.visit_leaves(group.box.grown(reach), [&](const Box_tree::Node& leaf) {
-      if (reached >= 0 && leaf.box.overlaps(known))
-        return;
+    const Tight_box box = group.box.grown(reach);
+    const Tight_box known = reached < 0 ? Tight_box::empty() : group.box.grown(reached);
+    m_tree.visit_leaves(box, [&](const Box_tree::Node& leaf) {
+      reserve(m_count + leaf.end - leaf.begin);
       std::size_t at = m_count;
-      reserve(m_count += leaf.end - leaf.begin);
-      for (std::uint32_t j = leaf.begin; j < leaf.end; ++j, ++at) {
+      for (std::uint32_t j = leaf.begin; j < leaf.end; ++j) { // without branches
+        const Vec3& p = m_points[j];
         m_index[at] = j;
         for (Eigen::Index c = 0; c < 3; ++c)
-          m_candidate[c][at] = static_cast<float>(m_scale * (m_points[j][c] - m_center[c]));
+          m_candidate[c][at] = static_cast<float>(m_scale * (p[c] - m_center[c]));
+        at += (box.contains(p) & !known.contains(p)) ? 1 : 0;
       }
+      m_count = at;
     });
   }
 
@@ -288,7 +291,7 @@ find_neighbor_lists(const std::vector<Vec3>& points, const Box_tree& tree, std::
     return lists;
   pcs::internal::for_each_block<ConcurrencyTag>(
       tree.groups().size(),
-      64,
+      256,
       [&](std::size_t begin, std::size_t end) {
         Group_search search(points, tree, std::min(k, width), width);
         for (std::size_t group = begin; group < end; ++group)

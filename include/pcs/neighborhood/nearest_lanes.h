@@ -200,7 +200,7 @@ public:
                 std::uint8_t(0));
     std::fill(std::begin(m_count), std::end(m_count), std::size_t(0));
     for (std::size_t first = 0; first < n; first += 64)
-      list(first, index);
+      list(first, std::min<std::size_t>(n - first, 64), index);
   }
 
   std::size_t count(std::size_t query) const { return m_count[query]; }
@@ -211,11 +211,11 @@ public:
   }
 
 private:
-  /// Lists the marked ones of 64 candidates.
-  void list(std::size_t first, const std::uint32_t* index)
+  /// Lists the marked ones of up to 64 candidates.
+  void list(std::size_t first, std::size_t count_of_marks, const std::uint32_t* index)
   {
     std::uint64_t marks[8] = {};
-    for (std::size_t byte = 0; byte < 8; ++byte) {
+    for (std::size_t byte = 0; 8 * byte < count_of_marks; ++byte) {
       std::uint64_t rows = 0; // of a candidate each
       for (std::size_t j = 0; j < 8; ++j)
         rows |= std::uint64_t(m_mask[first + 8 * byte + j]) << 8 * j;

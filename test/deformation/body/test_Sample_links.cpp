@@ -129,6 +129,34 @@ double largest_jump(const Sampled& s, const Sample_links& links)
 
 BOOST_AUTO_TEST_SUITE(Sample_links)
 
+BOOST_AUTO_TEST_CASE(nearest_samples_of_eight_points_are_those_of_each)
+{
+  using namespace pcs::deformation::internal;
+  for (const std::size_t k : {2u, 6u, 9u})
+    for (const bool is_grid : {false, true}) { // equal distances on grids
+      const Points samples = is_grid ? pcs_test::plate(6, 6, 0.25) : pcs_test::random_points(49, 3);
+      std::vector<std::uint32_t> ring;
+      for (std::uint32_t s = 0; s < samples.size(); s += s % 3 == 0 ? 1 : 2)
+        ring.push_back(s);
+      const Points points = is_grid ? pcs_test::plate(7, 6, 0.125) : pcs_test::random_points(50, 4);
+      Ring_search search(samples, k);
+      std::vector<Sample_candidate> found, expected;
+      for (std::size_t first = 0; first < points.size(); first += Ring_search::size) {
+        const std::size_t count = std::min<std::size_t>(8, points.size() - first);
+        search.start(points.data() + first, count, ring[first % ring.size()], ring);
+        for (std::size_t l = 0; l < count; ++l) {
+          search.nearest(l, found);
+          nearest_samples(points[first + l], samples, ring, k, expected);
+          BOOST_TEST_REQUIRE(found.size() == expected.size());
+          for (std::size_t b = 0; b < found.size(); ++b) {
+            BOOST_TEST(found[b].sample == expected[b].sample);
+            BOOST_TEST(found[b].squared_distance == expected[b].squared_distance);
+          }
+        }
+      }
+    }
+}
+
 BOOST_AUTO_TEST_CASE(the_nearest_of_the_two_rings_move_a_point)
 {
   for (const Points& cloud : {pcs_test::random_points(800, 1), pcs_test::sphere(1500)})

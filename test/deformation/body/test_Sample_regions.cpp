@@ -6,6 +6,7 @@
 #include <pcs/deformation/body/octree_samples.h>
 #include <pcs/neighborhood/drop_short_cuts.h>
 #include <support/networks.h>
+#include <support/threads.h>
 
 #include <boost/test/unit_test.hpp>
 
@@ -112,6 +113,29 @@ std::size_t cross_links(const Sampled& s, double gap, double x)
 } // namespace
 
 BOOST_AUTO_TEST_SUITE(Sample_regions)
+
+BOOST_AUTO_TEST_CASE(regions_of_several_blocks_are_those_of_dijkstra)
+{
+  check_against_dijkstra(pcs_test::sphere(40000), 5);
+  Points snake; // paths cross the blocks many times
+  for (int i = 0; i < 40000; ++i)
+    snake.push_back(Vec3(i % 2000, 3.0 * (i / 2000), std::sin(0.01 * i)));
+  check_against_dijkstra(snake, 3);
+}
+
+BOOST_AUTO_TEST_CASE(regions_are_the_same_for_every_number_of_threads)
+{
+  const Points points = pcs_test::in_spatial_order(pcs_test::sphere(60000));
+  const auto graph = pcs::neighborhood::nearest_neighbor_graph<Tag>(points, 6);
+  const auto samples = pcs::deformation::octree_samples(points, 300);
+  const auto expected = pcs::deformation::grow_regions(points, graph, samples).sample_of_point;
+  for (const int threads : pcs_test::thread_counts)
+    pcs_test::with_threads(threads, [&] {
+      using Any_tag = CGAL::Parallel_if_available_tag;
+      const auto found = pcs::deformation::grow_regions<Any_tag>(points, graph, samples);
+      BOOST_TEST((found.sample_of_point == expected));
+    });
+}
 
 BOOST_AUTO_TEST_CASE(regions_are_those_of_dijkstra)
 {
