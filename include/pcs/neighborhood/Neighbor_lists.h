@@ -67,25 +67,20 @@ public:
                std::size_t width)
     : m_points(points), m_tree(tree), m_k(k), m_width(width)
   {
+    const Tight_box& box = tree.nodes().front().box;
+    m_least_reach = 1e-18 * (box.high - box.low).maxCoeff(); // squares stay in the range of a float
   }
 
-  /// Finds the neighbours of the points of a group, and writes them to `lists`.
+  /// Finds the neighbours of the points of a group, and writes them to `lists`. Points that need a
+  /// much larger reach than the others are searched alone.
   void search(const Box_tree::Node& group, Neighbor_lists& lists)
   {
-    double reach = std::min(m_next_reach, first_reach(group)), reached = -1;
-    start(group, reach);
-    while (true) {
-      gather(group, reached, reach);
-      measure();
-      const double needed = needed_reach(reach);
-      if (needed <= reach || m_count == m_points.size()) {
-        m_next_reach = growth_of_reach * needed;
-        break;
-      }
-      reached = reach;
-      reach = needed < infinity ? needed : 2 * reach;
-    }
-    write(group, lists);
+    const double reach = search(group, std::min(m_next_reach, first_reach(group)), lists);
+    m_pending.swap(m_alone);
+    for (const std::uint32_t i : m_alone)
+      search({{m_points[i], m_points[i]}, i, i + 1, 1}, reach, lists);
+    m_alone.clear();
+    m_next_reach = growth_of_reach * reach;
   }
 
 private:
@@ -94,6 +89,11 @@ private:
   static constexpr double tie_factor = distance_tie_factor * distance_tie_factor;
   /// Reach of a group, in multiples of that needed by the group before. [-]
   static constexpr double growth_of_reach = 1.2;
+  /// Larger growth of the reach concerns few points of a group. [-]
+  static constexpr double largest_step = 2;
+  /// Growth of a reach with too few points. It is small, since an outlier may be near dense parts,
+  /// of which the next reach must not contain many points. [-]
+  static constexpr double growth_without_neighbors = 1.3;
 
   struct Candidate
   {
@@ -107,6 +107,26 @@ private:
     std::vector<float> smallest, all;
     float limit[lanes]; ///< largest squared distance of a neighbour, rounding included
   };
+
+  /// Starts with the given reach. Returns the reach of the points that are not pending.
+  double search(const Box_tree::Node& group, double reach, Neighbor_lists& lists)
+  {
+    reach = std::max(reach, m_least_reach);
+    double reached = -1;
+    start(group, reach);
+    while (true) {
+      gather(group, reached, reach);
+      measure();
+      const double needed = needed_reach(reach);
+      const bool is_all = m_count == m_points.size();
+      if (needed <= reach || is_all || (m_size > 1 && needed > largest_step * reach)) {
+        write(group, is_all ? infinity : reach, lists);
+        return std::min(needed, reach);
+      }
+      reached = reach;
+      reach = needed < infinity ? needed : growth_without_neighbors * reach;
+    }
+  }
 
   /// Guesses the distance from the box of the group within which there are `k` neighbours of each
   /// of its points.
@@ -128,7 +148,7 @@ private:
                      [](const Candidate& a, const Candidate& b) {
                        return a.squared_distance < b.squared_distance;
                      });
-    return distance_tie_factor * (std::sqrt(m_exact[m_k].squared_distance) + diagonal);
+    return 0.25 * std::sqrt(m_exact[m_k].squared_distance); // points beside in the order may be far
   }
 
   void start(const Box_tree::Node& group, double reach)
@@ -210,7 +230,7 @@ private:
         m_blocks[b].limit[l] = static_cast<float>((1 + 4 * rounding) * limit * limit);
         largest = std::max(largest, limit);
       }
-    return (1 + rounding) * largest / m_scale;
+    return (1 + 4 * rounding) * largest / m_scale; // at least the roots of the limits
   }
 
   /// Whether `a` is nearer than `b`. Coordinates decide ties.
@@ -221,14 +241,20 @@ private:
     return lexicographically_less(m_points[a.point], m_points[b.point]);
   }
 
-  void write(const Box_tree::Node& group, Neighbor_lists& lists)
+  /// Writes the neighbours of all points that need no larger reach. The others are pending.
+  void write(const Box_tree::Node& group, double reach, Neighbor_lists& lists)
   {
-    const std::size_t n = m_count;
+    const double largest = m_scale * m_scale * reach * reach;
     for (std::size_t b = 0; b < m_number_of_blocks; ++b) {
       const Block& block = m_blocks[b];
-      m_hits.find(block.all.data(), n, block.limit, m_index.data());
-      for (std::size_t l = 0; l < std::min(lanes, m_size - b * lanes); ++l)
-        write_row(group.begin + b * lanes + l, m_hits.of_query(l), m_hits.count(l), lists);
+      m_hits.find(block.all.data(), m_count, block.limit, m_index.data());
+      for (std::size_t l = 0; l < std::min(lanes, m_size - b * lanes); ++l) {
+        const std::size_t i = group.begin + b * lanes + l;
+        if (double(block.limit[l]) <= largest)
+          write_row(i, m_hits.of_query(l), m_hits.count(l), lists);
+        else
+          m_pending.push_back(static_cast<std::uint32_t>(i));
+      }
     }
   }
 
@@ -264,7 +290,7 @@ private:
   const std::vector<Vec3>& m_points;
   const Box_tree& m_tree;
   std::size_t m_k, m_width;
-  double m_next_reach = infinity;
+  double m_next_reach = infinity, m_least_reach = 0;
   // of the group
   Vec3 m_center = Vec3::Zero();
   double m_diagonal = 0, m_scale = 1;
@@ -275,6 +301,7 @@ private:
   std::vector<float> m_candidate[3];
   Lane_hits m_hits;
   std::vector<Candidate> m_exact;
+  std::vector<std::uint32_t> m_pending, m_alone; ///< points
 };
 
 /// Returns the `k` nearest neighbours of each point, ties included.

@@ -79,6 +79,30 @@ struct Ring_moments
   }
 };
 
+/// The same without padding, since they are the largest array of the construction.
+struct Packed_moments
+{
+  float value[10]; ///< sum, squares, products, count
+
+  PCS_ALWAYS_INLINE void pack(const Ring_moments& m)
+  {
+    for (std::size_t k = 0; k < 3; ++k) {
+      value[k] = m.sum[k];
+      value[3 + k] = m.squares[k];
+      value[6 + k] = m.products[k];
+    }
+    value[9] = m.sum[3];
+  }
+
+  PCS_ALWAYS_INLINE void unpack(Ring_moments& m) const
+  {
+    pcs::internal::load(value, m.sum);
+    pcs::internal::load(value + 3, m.squares); // the last coordinates of these are not used
+    pcs::internal::load(value + 6, m.products);
+    m.sum[3] = value[9];
+  }
+};
+
 /// The moments of eight points, the same coordinate of all points together.
 struct Block_moments
 {
@@ -244,16 +268,16 @@ scaled_edge(const Vec3& from, const Vec3& to, double scale, float last)
 
 /// Returns the moments of each point and its neighbours, in units of `1 / scale`.
 template <class ConcurrencyTag>
-pcs::internal::Huge_vector<Ring_moments>
+pcs::internal::Huge_vector<Packed_moments>
 ring_moments(const std::vector<Vec3>& points, const Proximity_graph& graph, double scale)
 {
-  pcs::internal::Huge_vector<Ring_moments> ring(points.size());
+  pcs::internal::Huge_vector<Packed_moments> ring(points.size());
   pcs::internal::for_each_index<ConcurrencyTag>(points.size(), [&](std::size_t i) {
     Ring_moments m;
     m.sum[3] = 1;
     for (auto j = graph.begin(i); j != graph.end(i); ++j)
       m.add_point(scaled_edge(points[i], points[*j], scale, 1));
-    ring[i] = m;
+    ring[i].pack(m);
   });
   return ring;
 }
@@ -276,9 +300,12 @@ pcs::internal::Huge_vector<Surface_normal> surface_normals(const std::vector<Vec
         Block_moments moments;
         for (std::size_t l = 0; l < block; ++l) {
           const std::size_t i = std::min(b * block + l, n - 1);
-          Ring_moments m = ring[i];
-          for (auto j = graph.begin(i); j != graph.end(i); ++j)
-            m.add(ring[*j], scaled_edge(points[i], points[*j], scale, 0));
+          Ring_moments m, other;
+          ring[i].unpack(m);
+          for (auto j = graph.begin(i); j != graph.end(i); ++j) {
+            ring[*j].unpack(other);
+            m.add(other, scaled_edge(points[i], points[*j], scale, 0));
+          }
           for (std::size_t k = 0; k < 4; ++k)
             moments.sum[k][l] = m.sum[k];
           for (std::size_t k = 0; k < 3; ++k) {
@@ -363,8 +390,10 @@ private:
 };
 
 /// Restores the shortest removed links that would separate `largest_clump` points or fewer.
+/// \param suspects the points with links that may be removed, in increasing order
 inline void keep_clumps(const std::vector<Vec3>& points,
                         const Proximity_graph& graph,
+                        const std::vector<std::uint32_t>& suspects,
                         std::vector<char>& is_dropped)
 {
   struct Drop
@@ -377,12 +406,11 @@ inline void keep_clumps(const std::vector<Vec3>& points,
     }
   };
   std::vector<Drop> drops;
-  for (std::size_t i = 0; i < points.size(); ++i)
+  for (const std::uint32_t i : suspects)
     for (std::size_t e = graph.first[i]; e < graph.first[i + 1]; ++e)
       if (is_dropped[e] && graph.neighbor[e] > i)
-        drops.push_back({(points[graph.neighbor[e]] - points[i]).squaredNorm(),
-                         static_cast<std::uint32_t>(i),
-                         graph.neighbor[e]});
+        drops.push_back(
+            {(points[graph.neighbor[e]] - points[i]).squaredNorm(), i, graph.neighbor[e]});
   if (drops.empty())
     return;
   Point_sets sets(points.size());
@@ -444,6 +472,12 @@ std::size_t drop_short_cuts(const std::vector<Vec3>& points, Proximity_graph& gr
       trusted_degree[i] += is_suspected[e] ? 0u : 1u;
     }
   });
+  std::vector<std::uint32_t> suspects; // few points, or none
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (trusted_degree[i] < graph.degree(i))
+      suspects.push_back(static_cast<std::uint32_t>(i));
+  if (suspects.empty())
+    return 0;
   const auto have_common_neighbor = [&](std::size_t i, std::size_t j) {
     for (std::size_t a = graph.first[i], b = graph.first[j];
          a < graph.first[i + 1] && b < graph.first[j + 1];) {
@@ -460,9 +494,8 @@ std::size_t drop_short_cuts(const std::vector<Vec3>& points, Proximity_graph& gr
     return false;
   };
   std::vector<char> is_dropped(graph.neighbor.size(), 0);
-  pcs::internal::for_each_index<ConcurrencyTag>(points.size(), [&](std::size_t i) {
-    if (trusted_degree[i] == graph.degree(i))
-      return;
+  pcs::internal::for_each_index<ConcurrencyTag>(suspects.size(), [&](std::size_t s) {
+    const std::size_t i = suspects[s];
     for (std::size_t e = graph.first[i]; e < graph.first[i + 1]; ++e) {
       const std::size_t j = graph.neighbor[e];
       is_dropped[e] = is_suspected[e] && trusted_degree[i] >= smallest_remaining_degree &&
@@ -472,9 +505,9 @@ std::size_t drop_short_cuts(const std::vector<Vec3>& points, Proximity_graph& gr
                           : 0;
     }
   });
-  internal::keep_clumps(points, graph, is_dropped);
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
+  internal::keep_clumps(points, graph, suspects, is_dropped);
+  std::size_t kept = graph.first[suspects.front()]; // rows before keep their place
+  for (std::size_t i = suspects.front(); i < points.size(); ++i) {
     const std::size_t begin = graph.first[i], end = graph.first[i + 1];
     graph.first[i] = static_cast<std::uint32_t>(kept);
     for (std::size_t e = begin; e < end; ++e)

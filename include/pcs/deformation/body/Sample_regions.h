@@ -247,15 +247,25 @@ Sample_regions grow_regions(const std::vector<Vec3>& points,
   return regions;
 }
 
+/// Length that an edge adds to the border that it crosses: at most the spacing, so that outliers
+/// count little. [L]
+inline double crossing_length(const std::vector<Vec3>& points,
+                              const neighborhood::Proximity_graph& graph,
+                              std::size_t i,
+                              std::size_t j)
+{
+  return std::min({(points[j] - points[i]).norm(),
+                   local_spacing(points, graph, i),
+                   local_spacing(points, graph, j)});
+}
+
 namespace internal {
 
 /// An edge between the regions of two samples.
 struct Region_crossing
 {
   std::uint32_t from, to; ///< samples
-  /// Length that the edge adds to the border that it crosses: at most the spacing, so that outliers
-  /// count little. [L]
-  double length;
+  double length;          ///< `crossing_length()`
 };
 
 /// Returns the edges between regions, in the order of the rows of the graph.
@@ -268,20 +278,10 @@ std::vector<Region_crossing> region_crossings(const std::vector<Vec3>& points,
   std::vector<std::vector<Region_crossing>> found((points.size() + block_size - 1) / block_size);
   const auto find = [&](std::size_t begin, std::size_t end) {
     auto& crossings = found[begin / block_size];
-    for (std::size_t i = begin; i < end; ++i) {
-      double spacing = -1;
-      for (auto j = graph.begin(i); j != graph.end(i); ++j) {
-        if (label[i] == label[*j] || label[i] == no_sample)
-          continue;
-        if (spacing < 0)
-          spacing = local_spacing(points, graph, i);
-        crossings.push_back(
-            {label[i],
-             label[*j],
-             std::min(
-                 {(points[*j] - points[i]).norm(), spacing, local_spacing(points, graph, *j)})});
-      }
-    }
+    for (std::size_t i = begin; i < end; ++i)
+      for (auto j = graph.begin(i); j != graph.end(i); ++j)
+        if (label[i] != label[*j] && label[i] != no_sample)
+          crossings.push_back({label[i], label[*j], crossing_length(points, graph, i, *j)});
   };
   pcs::internal::for_each_block<ConcurrencyTag>(points.size(), block_size, find);
   std::vector<Region_crossing> crossings;
