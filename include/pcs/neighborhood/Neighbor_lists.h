@@ -119,13 +119,31 @@ private:
       measure();
       const double needed = needed_reach(reach);
       const bool is_all = m_count == m_points.size();
-      if (needed <= reach || is_all || (m_size > 1 && needed > largest_step * reach)) {
+      const bool is_step_large = needed > largest_step * reach;
+      const bool are_few = is_step_large && 2 * number_beyond(reach) <= m_size;
+      if (needed <= reach || is_all || are_few) {
         write(group, is_all ? infinity : reach, lists);
         return std::min(needed, reach);
       }
       reached = reach;
-      reach = needed < infinity ? needed : growth_without_neighbors * reach;
+      reach = is_step_large ? growth_without_neighbors * reach : needed;
     }
+  }
+
+  /// Returns the number of points that need a larger reach.
+  std::size_t number_beyond(double reach) const
+  {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < m_size; ++i)
+      count += is_within(i, reach) ? 0 : 1;
+    return count;
+  }
+
+  /// Whether all neighbours of point `i` of the group are within a reach.
+  bool is_within(std::size_t i, double reach) const
+  {
+    const double scaled = m_scale * reach;
+    return double(m_blocks[i / lanes].limit[i % lanes]) <= scaled * scaled;
   }
 
   /// Guesses the distance from the box of the group within which there are `k` neighbours of each
@@ -148,7 +166,7 @@ private:
                      [](const Candidate& a, const Candidate& b) {
                        return a.squared_distance < b.squared_distance;
                      });
-    return 0.25 * std::sqrt(m_exact[m_k].squared_distance); // points beside in the order may be far
+    return std::sqrt(m_exact[m_k].squared_distance);
   }
 
   void start(const Box_tree::Node& group, double reach)
@@ -244,13 +262,12 @@ private:
   /// Writes the neighbours of all points that need no larger reach. The others are pending.
   void write(const Box_tree::Node& group, double reach, Neighbor_lists& lists)
   {
-    const double largest = m_scale * m_scale * reach * reach;
     for (std::size_t b = 0; b < m_number_of_blocks; ++b) {
       const Block& block = m_blocks[b];
       m_hits.find(block.all.data(), m_count, block.limit, m_index.data());
       for (std::size_t l = 0; l < std::min(lanes, m_size - b * lanes); ++l) {
         const std::size_t i = group.begin + b * lanes + l;
-        if (double(block.limit[l]) <= largest)
+        if (is_within(b * lanes + l, reach))
           write_row(i, m_hits.of_query(l), m_hits.count(l), lists);
         else
           m_pending.push_back(static_cast<std::uint32_t>(i));
