@@ -187,7 +187,7 @@ struct Normal_lanes
     middle = sum - largest;
   }
 
-  /// Finds vectors perpendicular to the rows of the matrices minus an eigenvalue, and their lengths.
+  /// Finds vectors perpendicular to the rows of the matrices minus an eigenvalue.
   static PCS_ALWAYS_INLINE void
   find_eigenvectors(const Matrices& a, const Doubles& value, Doubles* c, Doubles& length)
   {
