@@ -115,7 +115,7 @@ BOOST_AUTO_TEST_CASE(normals_are_the_eigenvectors_of_the_moments)
       if (confidence > 0.05)
         BOOST_TEST(std::abs(n.dot(eigen.eigenvectors().col(0))) > 1 - 1e-6);
       for (std::size_t k = 0; k < 4; ++k)
-        BOOST_TEST(found[l][k] == plain[l][k]);
+        BOOST_TEST(float(found[l][k]) == float(plain[l][k]));
     }
   }
 }

@@ -40,14 +40,15 @@ struct Tight_box
   /// Whether two boxes have a common point. Without branches, which could not be predicted.
   bool overlaps(const Tight_box& other) const
   {
-    return (low[0] <= other.high[0]) & (low[1] <= other.high[1]) & (low[2] <= other.high[2]) &
-           (high[0] >= other.low[0]) & (high[1] >= other.low[1]) & (high[2] >= other.low[2]);
+    return (is_ordered(low, other.high) & is_ordered(other.low, high)) != 0;
   }
 
-  bool contains(const Vec3& p) const
+  bool contains(const Vec3& p) const { return (is_ordered(low, p) & is_ordered(p, high)) != 0; }
+
+  /// Returns 1 if no coordinate of `a` is larger than that of `b`, otherwise 0.
+  static int is_ordered(const Vec3& a, const Vec3& b)
   {
-    return (low[0] <= p[0]) & (low[1] <= p[1]) & (low[2] <= p[2]) & (p[0] <= high[0]) &
-           (p[1] <= high[1]) & (p[2] <= high[2]);
+    return int(a[0] <= b[0]) & int(a[1] <= b[1]) & int(a[2] <= b[2]);
   }
 
   /// Returns the box whose points have coordinates that differ by at most `distance`.

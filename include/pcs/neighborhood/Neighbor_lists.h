@@ -202,7 +202,7 @@ private:
         m_index[at] = j;
         for (Eigen::Index c = 0; c < 3; ++c)
           m_candidate[c][at] = static_cast<float>(m_scale * (p[c] - m_center[c]));
-        at += (box.contains(p) & !known.contains(p)) ? 1 : 0;
+        at += (int(box.contains(p)) & int(!known.contains(p))) != 0 ? 1 : 0;
       }
       m_count = at;
     });
