@@ -28,11 +28,6 @@
 #include <system_error>
 #include <vector>
 
-using pcs::Orl_alignment;
-using pcs::Orl_orientation;
-using pcs::Point_transport;
-using pcs::Transport_options;
-
 namespace orl_program {
 
 void add(Space& space, const Tree_file& file)
@@ -62,25 +57,29 @@ bool is_stored(const Options& o)
 pcs::Matching_weights weights_of(const Options& o)
 {
   pcs::Matching_weights weights;
-  weights.is_published = o.is_published;
+  weights.is_published = o.method.is_published;
   return weights;
 }
 
 /// Describes the method of matching branches and points, for files of correspondences.
 std::string method(const Options& o)
 {
-  return "--align " + o.align + " --up " + o.up + " --transport " + o.transport +
-         (o.is_published ? " --published-energy" : "");
+  std::string text = "--align " + o.align + " --up " + o.up;
+  for (const auto& [name, value] : point_method(o.method))
+    text += " " + name + " " + value;
+  return text + (o.method.is_published ? " --published-energy" : "");
 }
 
 /// Reads stored correspondences. Options may repeat the stored method, but not change it.
 pcs::Orl_correspondences read_stored(const Options& o)
 {
   pcs::Orl_correspondences stored = pcs::IO::read_correspondences(o.correspondences);
-  for (const auto& [name, value] : {std::make_pair("--align", " " + o.align),
-                                    std::make_pair("--up", " " + o.up),
-                                    std::make_pair("--transport", " " + o.transport),
-                                    std::make_pair("--published-energy", std::string())})
+  std::vector<std::pair<std::string, std::string>> options = point_method(o.method);
+  options.insert(options.begin(), {{"--align", o.align}, {"--up", o.up}});
+  for (auto& [name, value] : options)
+    value.insert(0, " ");
+  options.emplace_back("--published-energy", "");
+  for (const auto& [name, value] : options)
     if (o.is_given(name) && (stored.note + " ").find(name + value + " ") == std::string::npos)
       throw pcs::Invalid_input(o.correspondences + ": made with other options (" + stored.note +
                                ") than " + name + value + "; leave this out, or name another file");
@@ -91,18 +90,12 @@ pcs::Orl_report
 build(Space& space, const Options& o, const std::optional<pcs::Orl_correspondences>& stored)
 {
   program::Progress_line line(!o.is_quiet);
-  pcs::Transport_options transport;
-  if (o.transport == "sinkhorn")
-    transport.method = pcs::Point_transport::sinkhorn;
-  const pcs::Orl_orientation orientation =
-      o.orientation == "world-axes"    ? pcs::Orl_orientation::world_axes
-      : o.orientation == "transported" ? pcs::Orl_orientation::transported
-                                       : pcs::Orl_orientation::gauge_fixed;
   const std::function<bool(double)> callback = [&](double f) {
     line.show("correspondences", f);
     return true;
   };
-  const auto form = np::orientation(orientation);
+  const auto form =
+      np::orientation(orientation(o.method)).virtual_direction(virtual_direction(o.method));
   if (stored)
     try {
       return space.build_from(*stored, form);
@@ -113,7 +106,8 @@ build(Space& space, const Options& o, const std::optional<pcs::Orl_correspondenc
   const bool may_turn = o.align == "yaw" && o.number_of_trees() == 2;
   pcs::Orl_report report = space.build(
       form.matching_weights(weights_of(o))
-          .transport_options(transport)
+          .assignment_options(assignment_options(o.method))
+          .transport_options(transport_options(o.method))
           .alignment(may_turn ? pcs::Orl_alignment::rotate_about_up : pcs::Orl_alignment::as_given)
           .up_direction(program::up_direction<Kernel>(o.up))
           .callback(callback));
@@ -161,7 +155,8 @@ nlohmann::ordered_json report_json(const Space& space,
   json["status"] = pcs::to_string(r.status);
   json["distance"] = {{"sum", r.distance},
                       {"square", space.distance(a, b, np::metric(Orl_metric::square))},
-                      {"cone", space.distance(a, b, np::metric(Orl_metric::cone))}};
+                      {"cone", space.distance(a, b, np::metric(Orl_metric::cone))},
+                      {"published", space.distance(a, b, np::metric(Orl_metric::published))}};
   json["number_of_trees"] = r.number_of_trees;
   json["number_of_common_branches"] = r.number_of_common_branches;
   const bool is_pair = r.number_of_trees == 2;
@@ -308,6 +303,7 @@ void run(const Options& o)
     pcs::IO::write_shape_space(o.save, space.data());
   if (o.has_places()) {
     const auto path = np::max_extrapolation_angle(o.max_extrapolation_angle * CGAL_PI / 180)
+                          .extrapolation(extrapolation(o.method))
                           .do_limit_radii(o.do_limit_radii)
                           .branch_emergence(branch_emergence(space, o));
     for (const double lambda : o.lambda)
@@ -317,7 +313,7 @@ void run(const Options& o)
   if (files.size() == 2)
     matches.write([&] { return matches_text(space, files[0], files[1]); });
   changes.write([&] { return changes_text(space, files); });
-  distances.write([&] { return distances_text(space); });
+  distances.write([&] { return distances_text(space, metric(o.method)); });
   report_file.write([&] { return report_json(space, report, files, o, was_stored, turns); });
   if (!o.is_quiet && o.load.empty())
     std::cout << report << '\n';

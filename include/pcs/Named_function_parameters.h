@@ -85,9 +85,11 @@
   PCS_OWN(do_use_unit_weights)                                                                     \
   /* Orl_shape_space: paths between trees */                                                       \
   PCS_OWN(max_extrapolation_angle)                                                                 \
+  PCS_OWN(extrapolation)                                                                           \
   PCS_OWN(do_limit_radii)                                                                          \
   PCS_OWN(branch_emergence)                                                                        \
   PCS_OWN(point_path)                                                                              \
+  PCS_OWN(point_normals)                                                                           \
   PCS_OWN(do_keep_absent_branches)                                                                 \
   /* Orl_shape_space: statistics of several trees */                                               \
   PCS_OWN(metric)                                                                                  \

@@ -49,7 +49,7 @@ namespace pcs {
 
   The class implements chapter 4 of \cite aiteanu2022. Branches are matched by an elastic energy of
   their curves, and all trees are represented on a common topology. The coordinates of a tree are
-  the orientations, radii and lengths (ORL) of the edges of this topology. Distances are defined by
+  the orientations, radii and lengths (ORL) of the edges of this topology. Distances are sums as in
   (4.7), and geodesics interpolate the coordinates. Points are matched by optimal transport along
   corresponding edges, and move with their edges.
 
@@ -116,7 +116,8 @@ public:
       \np{point_map} position of an element of `scan` [L]
         \nptype readable, value with `x()`, `y()`, `z()`
         \npdefault `CGAL::Identity_property_map`
-      \np{normal_map} normal of an element; trees of the space have normals if all scans have them
+      \np{normal_map} normal of an element. If all scans have normals, trees of the space have
+          interpolated normals; otherwise their normals are orthogonal to the branches
         \nptype readable, value with `x()`, `y()`, `z()`
         \npdefault none: normals are estimated at forks
     \npend
@@ -171,7 +172,9 @@ public:
       \np{virtual_direction} direction of a branch in a tree that lacks it
         \nptype `Virtual_direction`
         \npdefault `of_partner`; `along_parent` is the published one
-      \np{do_use_unit_weights} whether all weights of the metric are 1, as published
+      \np{do_use_unit_weights} whether all weights of `Orl_metric::sum` and `square` are 1. Angles
+          and the numbers of nodes at attachments are then added to lengths;
+          `Orl_metric::published` is (4.7)
         \nptype `bool`
         \npdefault `false`: rotations are multiplied by the length of the edge, so that distances
             are lengths
@@ -334,7 +337,9 @@ public:
     \npbegin
       \np{metric} how differences of coordinates are combined
         \nptype `Orl_metric`
-        \npdefault `sum`
+        \npdefault `sum`; `published` is (4.7), in which angles [rad] and lengths [L] are added. Its
+            orientations are the published ones if the space was built with
+            `Orl_orientation::world_axes`
     \npend
   */
   template <class NamedParameters = parameters::Default_named_parameters>
@@ -360,7 +365,7 @@ public:
   /*!
     \brief returns the tree at `lambda` on the geodesic from `a` (0) to `b` (1), or beyond its ends.
 
-    Beyond the ends, lengths and radii remain positive. Edges rotate by at most
+    Beyond the ends, by default, lengths and radii remain positive. Edges rotate by at most
     `max_extrapolation_angle`, both relative to their parent edge and in space. The extrapolation of
     a branch is reduced if the branch would extend below the base of the tree (against the direction
     of growth). This does not apply to branches that extend below the base at one of the ends.
@@ -369,6 +374,9 @@ public:
       \np{max_extrapolation_angle} largest rotation of an edge beyond an end of the path [rad]
         \nptype `double`, `>= 0`; there is no limit if it is pi or more
         \npdefault `pi / 4`
+      \np{extrapolation} how lengths and radii continue beyond the ends
+        \nptype `Orl_extrapolation`
+        \npdefault `bounded`; `linear` is the published one
       \np{do_limit_radii} whether the base radius of a branch is limited to the radius of its parent
         \nptype `bool`
         \npdefault `false`, since real trees violate this rule
@@ -489,9 +497,13 @@ public:
       \np{point_map} where a position is written
         \nptype model of `WritablePropertyMap`, key: element of `result`, value: `Kernel::Point_3`
         \npdefault `CGAL::Identity_property_map`
-      \np{normal_map} where a normal is written, if all scans have normals
+      \np{normal_map} where a normal is written
         \nptype model of `WritablePropertyMap`, value: `Kernel::Vector_3`
         \npdefault none
+      \np{point_normals} which normals are written
+        \nptype `Point_normals`
+        \npdefault `of_scans` if all scans have normals, otherwise `across_branches`: orthogonal to
+            the direction of the branch
       \np{point_path} how points are interpolated; only in a space of two trees
         \nptype `Point_path`
         \npdefault `cylindrical`; `virtual_edges` is the published one
@@ -529,14 +541,14 @@ public:
       static_assert(is_normal_map,
                     "pcs::Orl_shape_space::points(): named parameter `normal_map` must be "
                     "writable, with elements of `result` as keys and vectors as values");
-      pcs::internal::check(!has_normals || m_state.has_normals(),
-                           caller,
-                           "`normal_map` needs trees that were added with normals");
+      const Point_normals normals =
+          shape_space::read_point_normals(np, m_state.has_normals(), caller);
       shape_space::internal::resize_range(result, t.number_of_points(), caller);
       if constexpr (is_point_map && is_normal_map)
         write_points(
             t.state(),
             path,
+            has_normals && normals == Point_normals::across_branches,
             shape_space::Point_writer<std::decay_t<decltype(std::begin(result))>,
                                       std::decay_t<decltype(point_map)>,
                                       std::decay_t<decltype(normal_map)>>{std::begin(result),
@@ -626,7 +638,7 @@ public:
   {
     return !family().first_point.empty() && family().first_point.back() > 0;
   }
-  //! whether points of trees of the space have normals
+  //! whether all scans have normals, which `points()` then interpolates
   bool has_normals() const { return m_state.has_normals(); }
   //!@}
 
@@ -670,7 +682,10 @@ private:
   }
 
   template <class Writer>
-  void write_points(const shape_space::Tree_state& t, Point_path path, const Writer& writer) const
+  void write_points(const shape_space::Tree_state& t,
+                    Point_path path,
+                    bool are_normals_across,
+                    const Writer& writer) const
   {
     if (m_state.is_pair())
       m_state.pair.instances.write(family().layout,
@@ -678,6 +693,7 @@ private:
                                    t.geometry,
                                    t.lambda,
                                    path,
+                                   are_normals_across,
                                    t.first_point,
                                    writer,
                                    ConcurrencyTag());
@@ -687,6 +703,7 @@ private:
                                   t.geometry,
                                   t.first_point,
                                   t.scan_weights,
+                                  are_normals_across,
                                   writer,
                                   ConcurrencyTag());
   }

@@ -312,10 +312,24 @@ BOOST_AUTO_TEST_CASE(options_change_the_result)
 {
   succeeds(trees + "--lambda 0.5 --output plain");
   const std::string plain = content("plain/lambda_0.500.ply");
-  for (const std::string option : {"--transport sinkhorn", "--orientation world-axes"}) {
+  for (const std::string option : {"--transport sinkhorn",
+                                   "--orientation world-axes",
+                                   "--point-assignment by-normal",
+                                   "--point-weights equal",
+                                   "--transport-cost distance",
+                                   "--reach inf",
+                                   "--point-path virtual-edges",
+                                   "--normals across"}) {
     succeeds(trees + "--lambda 0.5 --output other " + option);
     BOOST_TEST(content("other/lambda_0.500.ply") != plain, option);
   }
+  const std::string regularised = "--transport sinkhorn --sinkhorn-epsilon ";
+  succeeds(trees + "--lambda 0.5 --output other " + regularised + "0.02");
+  succeeds(trees + "--lambda 0.5 --output wide " + regularised + "0.5");
+  BOOST_TEST(content("other/lambda_0.500.ply") != content("wide/lambda_0.500.ply"));
+  succeeds(trees + "--lambda 1.5 --output plain");
+  succeeds(trees + "--lambda 1.5 --output other --extrapolation linear");
+  BOOST_TEST(content("other/lambda_1.500.swc") != content("plain/lambda_1.500.swc"));
   succeeds(trees + "--lambda 1.5 --output plain --max-extrapolation-degrees 90");
   succeeds(trees + "--lambda 1.5 --output other --max-extrapolation-degrees 0 --limit-radii");
   BOOST_TEST(content("other/lambda_1.500.ply") != content("plain/lambda_1.500.ply"));
@@ -325,12 +339,29 @@ BOOST_AUTO_TEST_CASE(options_change_the_result)
   pcs::IO::write_swc(path("trunk.swc"), orl_test::make_tree(branches));
   const std::string grown = "--skeleton trunk.swc --skeleton a.swc --lambda 0.5 ";
   succeeds(grown + "--output plain");
+  succeeds(grown + "--output other --virtual-direction along-parent");
+  BOOST_TEST(content("other/lambda_0.500.swc") != content("plain/lambda_0.500.swc"));
   succeeds(grown + "--output other --sequential-emergence");
   BOOST_TEST(content("other/lambda_0.500.swc") != content("plain/lambda_0.500.swc"));
   succeeds(grown + "--output other --simultaneous-emergence");
   BOOST_TEST(content("other/lambda_0.500.swc") == content("plain/lambda_0.500.swc"));
   refuses(grown + "--output other --simultaneous-emergence --sequential-emergence", "excludes");
   succeeds(trees + "--lambda 0.5 --output other --published-energy --orientation transported");
+}
+
+BOOST_AUTO_TEST_CASE(the_published_distance_ignores_the_position)
+{
+  orl_test::Tree moved = orl_test::random_tree(61, 4, 2);
+  for (std::size_t v = 0; v < num_vertices(moved); ++v)
+    moved[v].point = moved[v].point + orl_test::Kernel::Vector_3(1, 0, 0);
+  pcs::IO::write_swc(path("moved.swc"), moved);
+  const std::string pair = "--skeleton a.swc --skeleton moved.swc --output out --distances d.csv ";
+  const auto distance = [&] { return std::stod(content("d.csv").substr(2)); }; // 0,d
+  succeeds(pair);
+  BOOST_TEST(std::abs(distance() - 1) < 1e-6);
+  succeeds(pair + "--metric published --report r.json");
+  BOOST_TEST(distance() < 1e-6);
+  BOOST_TEST(Json::parse(content("r.json"))["distance"]["published"].get<double>() == distance());
 }
 
 BOOST_AUTO_TEST_CASE(a_limit_of_the_size_of_files_is_an_error)
@@ -409,10 +440,14 @@ BOOST_AUTO_TEST_CASE(correspondences_are_kept)
   BOOST_TEST(stored["distance"] == Json::parse(content("fresh.json"))["distance"]);
   // The same options are accepted again, other options are not.
   succeeds(trees + "--lambda 0.3 --output two --correspondences c.txt --align yaw --up z "
-                   "--transport exact");
+                   "--transport exact --reach 2 --point-weights area");
   BOOST_TEST(content("one/lambda_0.300.ply") == content("two/lambda_0.300.ply"));
-  for (const std::string option :
-       {"--published-energy", "--transport sinkhorn", "--align none", "--up y"})
+  for (const std::string option : {"--published-energy",
+                                   "--transport sinkhorn",
+                                   "--point-assignment by-normal",
+                                   "--reach 3",
+                                   "--align none",
+                                   "--up y"})
     refuses(trees + "--output three --correspondences c.txt " + option, "than " + option);
   BOOST_TEST(err.find("c.txt") != std::string::npos);
   succeeds(trees + "--output two --correspondences d.txt --align none --published-energy");
@@ -499,6 +534,11 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_with_a_sentence)
     refuses(trees + "--lambda " + list + " --output out", "separated by commas");
   refuses(trees + "--lambda 0.5,0.5001 --output out", "lambda_0.500");
   refuses(trees + "--transport fast --output out", "transport");
+  refuses(trees + "--sinkhorn-epsilon 0.1 --output out", "without --transport sinkhorn");
+  refuses(trees + "--metric published --output out", "without --distances");
+  refuses(trees + "--reach nan --output out", "--reach must be more than 0");
+  refuses(trees + trees + "--mean --point-path virtual-edges --output out", "--point-path");
+  refuses("--skeleton a.swc --skeleton b.swc --normals across --output out", "without points");
   write("file", "");
   refuses(trees + "--output file", "file");
   refuses(trees + "--output out --report missing/r.json", "missing/r.json");

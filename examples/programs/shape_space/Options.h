@@ -5,6 +5,7 @@
 #ifndef PCS_EXAMPLES_PROGRAMS_SHAPE_SPACE_OPTIONS_H
 #define PCS_EXAMPLES_PROGRAMS_SHAPE_SPACE_OPTIONS_H
 
+#include "Method_options.h"
 #include "common/is_seed.h"
 #include <pcs/core/errors.h>
 
@@ -34,10 +35,11 @@ struct Options
   std::set<std::string> given;           ///< names of all options of the command line
   std::vector<double> lambda = {0, 0.25, 0.5, 0.75, 1};
   std::string output, matches, report, correspondences;
-  std::string transport = "exact", orientation = "gauge-fixed", align = "yaw", up = "z";
+  std::string align = "yaw", up = "z";
+  Method_options method;
   double max_extrapolation_angle = 45;
   bool do_extend_axes = false, do_limit_radii = false, do_order_births = false,
-       do_join_births = false, is_published = false, is_quiet = false;
+       do_join_births = false, is_quiet = false;
 
   // families
   bool do_mean = false, do_growth = false, do_mesh = false, do_keep_absent_branches = false;
@@ -228,12 +230,6 @@ Exit codes: 0 success, 1 bad input or usage, 2 internal error.)");
   app.add_option("--up", o.up, "the vertical")
       ->check(CLI::IsMember({"x", "y", "z"}))
       ->capture_default_str();
-  app.add_option("--transport", o.transport, "how points are matched")
-      ->check(CLI::IsMember({"exact", "sinkhorn"}))
-      ->capture_default_str();
-  app.add_option("--orientation", o.orientation, "how orientations are measured")
-      ->check(CLI::IsMember({"gauge-fixed", "transported", "world-axes"}))
-      ->capture_default_str();
   app.add_option("--max-extrapolation-degrees",
                  o.max_extrapolation_angle,
                  "largest rotation of an edge beyond an end of the path [degrees]")
@@ -257,10 +253,8 @@ Exit codes: 0 success, 1 bad input or usage, 2 internal error.)");
   app.add_flag("--keep-absent-branches",
                o.do_keep_absent_branches,
                "skeletons also contain the branches that a tree lacks, as nodes in one place");
-  app.add_flag("--published-energy",
-               o.is_published,
-               "match branches with the energy as published [Aiteanu 2022]");
   app.add_flag("--quiet", o.is_quiet, "print errors only");
+  declare_method(app, o.method);
   declare_family(app, o);
   app.parse_complete_callback([&app, &o] {
     for (const CLI::Option* const option : app.get_options())
@@ -279,17 +273,43 @@ inline void check_effects(const Options& o)
             throw pcs::Invalid_input(name + (" has no effect " + why));
       };
   refuse(!o.load.empty(),
-         {"--orientation", "--extend-axes", "--align", "--up", "--transport", "--published-energy"},
+         {"--orientation",
+          "--virtual-direction",
+          "--extend-axes",
+          "--align",
+          "--up",
+          "--published-energy",
+          "--transport",
+          "--point-assignment",
+          "--point-weights",
+          "--transport-cost",
+          "--reach",
+          "--sinkhorn-epsilon"},
          "with --load-space: the trees of " + o.load + " are already matched");
   refuse(o.load.empty() && o.trees.empty(),
-         {"--transport", "--extend-axes"},
+         {"--extend-axes",
+          "--transport",
+          "--point-assignment",
+          "--point-weights",
+          "--transport-cost",
+          "--reach",
+          "--sinkhorn-epsilon",
+          "--point-path",
+          "--normals"},
          "without points (--tree)");
+  refuse(o.method.transport != "sinkhorn",
+         {"--sinkhorn-epsilon"},
+         "without --transport sinkhorn: exact transport has no regularization");
+  refuse(o.distances.empty(), {"--metric"}, "without --distances");
   refuse(o.skeletons.empty(), {"--root-number"}, "without --skeleton");
   refuse(o.load.empty() && o.skeletons.empty(),
          {"--extend-axes"},
          "without --skeleton: extracted axes already extend to the end of the points");
   refuse(!o.has_places(),
-         {"--max-extrapolation-degrees", "--sequential-emergence", "--simultaneous-emergence"},
+         {"--max-extrapolation-degrees",
+          "--extrapolation",
+          "--sequential-emergence",
+          "--simultaneous-emergence"},
          "without --lambda");
   refuse(!o.has_places() && o.number_of_samples == 0,
          {"--limit-radii"},
@@ -325,6 +345,10 @@ inline void check_numbers(const Options& o, std::size_t number_of_trees)
     for (const double x : scores)
       if (!std::isfinite(x) || std::abs(x) > 100)
         throw pcs::Invalid_input("--scores must be numbers between -100 and 100");
+  if (o.method.point_path != "cylindrical" && number_of_trees > 2)
+    throw pcs::Invalid_input("--point-path is for two trees, there are " +
+                             std::to_string(number_of_trees) +
+                             "; points of more trees move in cylindrical coordinates");
   if (!o.changes.empty() && number_of_trees != 2)
     throw pcs::Invalid_input("--changes is for two trees, there are " +
                              std::to_string(number_of_trees));
@@ -363,6 +387,8 @@ inline void check(const Options& o)
   for (const double l : o.lambda)
     if (!std::isfinite(l) || std::abs(l) > 1000)
       fail("--lambda must be finite numbers between -1000 and 1000");
+  if (!(o.method.reach > 0))
+    fail("--reach must be more than 0; inf: all mass is transported");
   std::map<std::string, double> names;
   for (const double l : o.lambda)
     if (const auto [it, is_new] = names.emplace(name_of(l), l); !is_new && it->second != l)

@@ -159,12 +159,12 @@ inline std::string changes_text(const Space& space, const std::vector<Tree_file>
   return text.str();
 }
 
-inline std::string distances_text(const Space& space)
+inline std::string distances_text(const Space& space, pcs::Orl_metric metric)
 {
   std::ostringstream text;
   text.precision(17);
   const std::size_t n = space.number_of_trees();
-  const std::vector<double> distances = pcs::distance_matrix(space);
+  const std::vector<double> distances = pcs::distance_matrix(space, np::metric(metric));
   for (std::size_t a = 0; a < n; ++a)
     for (std::size_t b = 0; b < n; ++b)
       text << distances[a * n + b] << (b + 1 < n ? ',' : '\n');

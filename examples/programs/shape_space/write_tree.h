@@ -60,22 +60,27 @@ inline void copy_properties(const Space& space,
 inline void write_scan(const Space& space,
                        const pcs::Orl_tree& tree,
                        const std::vector<Tree_file>& files,
+                       const Method_options& method,
                        const std::string& path)
 {
   const std::size_t n = tree.number_of_points();
   std::vector<Table::Point_3> points(n);
   std::vector<Table::Vector_3> normals;
-  if (space.has_normals()) {
+  const bool are_across = method.normals == "across";
+  const auto form = np::point_path(point_path(method));
+  if (space.has_normals() || are_across) {
     normals.resize(n);
     std::vector<std::size_t> index(n);
     for (std::size_t i = 0; i < n; ++i)
       index[i] = i;
     space.points(tree,
                  index,
-                 np::point_map(CGAL::make_property_map(points))
-                     .normal_map(CGAL::make_property_map(normals)));
+                 form.point_map(CGAL::make_property_map(points))
+                     .normal_map(CGAL::make_property_map(normals))
+                     .point_normals(are_across ? pcs::Point_normals::across_branches
+                                               : pcs::Point_normals::of_scans));
   } else
-    space.points(tree, points);
+    space.points(tree, points, form);
   Table out(std::move(points));
   if (!normals.empty())
     out.set_normals(normals);
@@ -99,7 +104,7 @@ inline void write_tree(const Space& space,
   space.skeleton(tree, skeleton, np::do_keep_absent_branches(o.do_keep_absent_branches));
   pcs::IO::write_swc(stem + ".swc", skeleton);
   if (space.has_points())
-    write_scan(space, tree, files, stem + ".ply");
+    write_scan(space, tree, files, o.method, stem + ".ply");
   if (o.do_mesh) {
     std::vector<Kernel::Point_3> points;
     std::vector<std::array<std::size_t, 3>> triangles;

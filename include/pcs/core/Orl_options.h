@@ -91,19 +91,38 @@ enum class Orl_orientation {
 //! \ingroup PkgPcsShapeSpaceRef
 //! how the differences of all coordinates are combined to a distance
 enum class Orl_metric {
-  sum,    ///< sum of absolute differences: (4.7)
-  square, ///< root of the sum of squared differences: geodesics are unique
-  cone    ///< edges are compared as vectors: the cost of a rotation is proportional to their length
+  sum,    ///< weighted sum of the absolute differences of all coordinates
+  square, ///< root of the weighted sum of squared differences: geodesics are unique
+  cone,   ///< edges are compared as vectors: the cost of a rotation is proportional to their length
+  //! (4.7): the sum over all edges of the angle between their orientations [rad], and of the
+  //! differences of their lengths and radii [L], without weights. Positions, attachments and
+  //! radii at the bases of branches are not part of it.
+  published
+};
+
+//! \ingroup PkgPcsShapeSpaceRef
+//! which branch a point belongs to where several branches are near
+enum class Point_assignment {
+  //! the branch with the least sum of the squared distance from its surface, in units of the noise,
+  //! and the squared angle between its normal and that of the point
+  by_distance_and_normal,
+  //! as published: branches are candidates if the point is at most `1 + noise` radii away from
+  //! their axis. Of several candidates, it is the branch with the least angle between its normal
+  //! and that of the point, projected to the plane of both branches. Without a candidate, it is the
+  //! branch with the nearest surface, in units of the radius.
+  by_normal
 };
 
 //! \ingroup PkgPcsShapeSpaceRef
 //! how the points of a scan are assigned to the edges of its tree
 struct Point_assignment_options
 {
+  Point_assignment rule = Point_assignment::by_distance_and_normal;
   //! deviation of points from the surface, as a fraction of the radius; 0.1
   //! corresponds to the published factor 1.1 [-]
   double noise = 0.1;
-  double normal_angle = 0.5; ///< deviation of normals that counts as much as the noise [rad]
+  //! deviation of normals that counts as much as the noise, for `by_distance_and_normal` [rad]
+  double normal_angle = 0.5;
   std::size_t number_of_neighbors = 12; ///< for normals, if none are given [count]
 };
 
@@ -163,12 +182,32 @@ enum class Point_path {
 };
 
 //! \ingroup PkgPcsShapeSpaceRef
+//! normals of the points of a tree of a space
+enum class Point_normals {
+  of_scans, ///< those of the scans, interpolated; all scans must have normals
+  //! orthogonal to the direction of the edge, as published: away from its axis, or across the blade
+  //! where the points of the edge are flat
+  across_branches
+};
+
+//! \ingroup PkgPcsShapeSpaceRef
 //! how branches emerge that only one end of a geodesic has
 enum class Branch_emergence {
   simultaneous, ///< all at once, as small copies: all coordinates are linear
   //! branches grow at their tips, and old wood does not move; each branch
   //! emerges when the tip of its parent passes its base
   sequential
+};
+
+//! \ingroup PkgPcsShapeSpaceRef
+//! how lengths and radii continue beyond the ends of a geodesic
+enum class Orl_extrapolation {
+  //! they decay towards half of their value at the end if they decrease; branches do not extend
+  //! below the base of the tree; and rotations are limited in space, too
+  bounded,
+  //! linearly, as published, but not below 0; `max_extrapolation_angle` limits only the rotation
+  //! relative to the parent edge
+  linear
 };
 
 //! \ingroup PkgPcsShapeSpaceRef

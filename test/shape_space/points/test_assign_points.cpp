@@ -87,6 +87,49 @@ BOOST_AUTO_TEST_CASE(points_at_forks_go_to_the_branch_they_lie_on)
   }
 }
 
+BOOST_AUTO_TEST_CASE(the_published_rule_takes_the_least_angle_in_the_plane_of_both_branches)
+{
+  // a trunk along z, and a branch along x of the same radius
+  const std::vector<Tube> tubes = {{Vec3(0, 0, -1), Vec3(0, 0, 1), 0.1, 0.1, 0},
+                                   {Vec3(0, 0, 0), Vec3(1, 0, 0), 0.1, 0.1, 1}};
+  const auto branch_of = [&](const Vec3& p, const Vec3& normal, pcs::Point_assignment rule) {
+    Point_assignment_options options;
+    options.rule = rule;
+    const auto tube =
+        pcs::shape_space::assign_points<CGAL::Sequential_tag>({p}, {normal}, tubes, 2, options);
+    return tubes[tube[0]].branch;
+  };
+  const auto published = [&](const Vec3& p, const Vec3& normal) {
+    return branch_of(p, normal, pcs::Point_assignment::by_normal);
+  };
+  constexpr double pi = CGAL_PI;
+  // In the plane, the normals of the trunk and of the branch are x and z. The part of the normal
+  // out of the plane, and its sign, have no effect.
+  const Vec3 both(0.105, 0, 0.08); // 1.05 radii from the trunk, within the branch
+  for (const double sign : {-1., 1.})
+    for (const double out : {0., 0.9, 5.})
+      for (const double degrees : {0., 30., 44., 46., 60., 90.}) {
+        const double a = degrees * pi / 180; // from x
+        const Vec3 normal = sign * Vec3(std::cos(a), out, std::sin(a)).normalized();
+        BOOST_TEST_CONTEXT(degrees << " degrees, out of the plane " << out)
+        BOOST_TEST(published(both, normal) == (degrees < 45 ? 0u : 1u));
+      }
+  // Beyond 1.1 radii of the trunk, there is one candidate: normals have no effect.
+  BOOST_TEST(published(Vec3(0.1101, 0, 0.08), Vec3::UnitX()) == 1u);
+  BOOST_TEST(published(Vec3(0.1099, 0, 0.08), Vec3::UnitX()) == 0u);
+  BOOST_TEST(published(Vec3(0.15, 0, 0.1099), Vec3::UnitX()) == 1u);
+  // Without a candidate, the nearest surface; a normal across the plane, the nearer branch.
+  BOOST_TEST(published(Vec3(0.5, 0, 0.3), Vec3::UnitX()) == 1u);
+  BOOST_TEST(published(Vec3(-0.3, 0, 0.3), Vec3::UnitZ()) == 0u);
+  BOOST_TEST(published(Vec3(0.08, 0, 0.09), Vec3::UnitY()) == 0u);
+  // The default also counts distances: this point is on the surface of the branch, and one noise
+  // away from that of the trunk, but its normal is a little nearer to that of the trunk.
+  const double a = 43.5 * pi / 180;
+  const Vec3 on_branch(0.1095, 0, 0.1), normal(std::cos(a), 0, std::sin(a));
+  BOOST_TEST(published(on_branch, normal) == 0u);
+  BOOST_TEST(branch_of(on_branch, normal, pcs::Point_assignment::by_distance_and_normal) == 1u);
+}
+
 BOOST_AUTO_TEST_CASE(without_radii_the_nearest_axis_is_taken)
 {
   const std::vector<Tube> tubes = {{Vec3(0, 0, 0), Vec3(0, 0, 1), 0, 0, 0},
@@ -99,6 +142,11 @@ BOOST_AUTO_TEST_CASE(without_radii_the_nearest_axis_is_taken)
                                                             1,
                                                             Point_assignment_options());
   BOOST_TEST((tube == std::vector<std::size_t>{0, 1, 1}));
+  Point_assignment_options published;
+  published.rule = pcs::Point_assignment::by_normal;
+  BOOST_TEST(
+      (pcs::shape_space::assign_points<CGAL::Sequential_tag>(points, {}, tubes, 1, published) ==
+       tube));
   BOOST_TEST(pcs::shape_space::assign_points<CGAL::Sequential_tag>({},
                                                                    {},
                                                                    tubes,

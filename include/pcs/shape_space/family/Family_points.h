@@ -53,16 +53,18 @@ public:
 
   /// Calls `put(i, point, normal, k)` for all points of a tree: `i` is the index among the
   /// points on branches of the tree, `k` the index among all points. `scan_weights`: `>= 0`; empty:
-  /// all equal.
+  /// all equal. With `is_across`, normals are orthogonal to the edges, away from their axes.
   template <class ConcurrencyTag, class Put>
   void write(const Orl_layout& layout,
              const Orl_coordinates& x,
              const Orl_geometry& geometry,
              const std::vector<std::size_t>& offset,
              const std::vector<double>& scan_weights,
+             bool is_across,
              const Put& put,
              ConcurrencyTag) const
   {
+    const bool is_mixed = m_has_normals && !is_across;
     pcs::internal::for_each_index<ConcurrencyTag>(
         layout.number_of_edges(),
         [&](std::size_t e) {
@@ -72,7 +74,7 @@ public:
           std::size_t i = offset[e];
           for (std::size_t k = m_first[e]; k < m_first[e + 1]; ++k, ++i) {
             Tube_coordinates p = m_coordinates[k];
-            Vec3 normal = m_has_normals ? m_normal[k] : Vec3(Vec3::Zero());
+            Vec3 normal = is_mixed ? m_normal[k] : Vec3(is_across ? 1 : 0, 0, 0);
             for_each_weight(k, scan_weights, [&](std::size_t j, double w) {
               if (j == none)
                 return;
@@ -81,7 +83,7 @@ public:
               p.overshoot += w * d.overshoot;
               p.angle += w * d.angle;
               p.distance += w * d.distance;
-              if (m_has_normals)
+              if (is_mixed)
                 normal += w * m_normal_difference[j].template cast<double>();
             });
             const double t = std::min(1.0, std::max(0.0, p.t));
@@ -92,7 +94,7 @@ public:
             const Vec3 local(across_x,
                              across_y,
                              cone.height(across_x, across_y, t) + unit * p.overshoot);
-            if (m_has_normals)
+            if (is_mixed || is_across)
               normal = cone.frame * around(normal, sine, cosine).stableNormalized();
             put(i, Vec3(cone.from + cone.frame * local), normal, k);
           }

@@ -48,9 +48,11 @@ void check_space_names(const NamedParameters& np)
                              tags::points_of_t,
                              CGAL::internal_np::callback_t,
                              tags::max_extrapolation_angle_t,
+                             tags::extrapolation_t,
                              tags::do_limit_radii_t,
                              tags::branch_emergence_t,
-                             tags::point_path_t>(np);
+                             tags::point_path_t,
+                             tags::point_normals_t>(np);
 }
 
 template <class NamedParameters>
@@ -176,11 +178,14 @@ Path_options read_path_options(const NamedParameters& np, const char* caller)
   options.max_extrapolation_angle = pcs::internal::pi / 4;
   static_assert(is_parameter_v<double, NamedParameters, tags::max_extrapolation_angle_t>,
                 "pcs: named parameter `max_extrapolation_angle` must be a number");
+  static_assert(is_parameter_v<Orl_extrapolation, NamedParameters, tags::extrapolation_t>,
+                "pcs: named parameter `extrapolation` must be a pcs::Orl_extrapolation");
   static_assert(is_parameter_v<bool, NamedParameters, tags::do_limit_radii_t>,
                 "pcs: named parameter `do_limit_radii` must be a bool");
   static_assert(is_parameter_v<Branch_emergence, NamedParameters, tags::branch_emergence_t>,
                 "pcs: named parameter `branch_emergence` must be a pcs::Branch_emergence");
   read_parameter(np, tags::max_extrapolation_angle, options.max_extrapolation_angle);
+  read_parameter(np, tags::extrapolation, options.extrapolation);
   read_parameter(np, tags::do_limit_radii, options.do_limit_radii);
   read_parameter(np, tags::branch_emergence, options.emergence);
   if (!(options.max_extrapolation_angle >= 0)) // valid values must not allocate
@@ -208,6 +213,27 @@ Point_path read_point_path(const NamedParameters& np, bool is_pair, const char* 
                        "`point_path` is for two trees; points of more trees move in cylindrical "
                        "coordinates");
   return path;
+}
+
+/// Reads the kind of normals: by default those of the scans, if all of them have normals.
+template <class NamedParameters>
+Point_normals
+read_point_normals(const NamedParameters& np, bool have_scans_normals, const char* caller)
+{
+  using Tag = pcs::internal_np::point_normals_t;
+  Point_normals normals =
+      have_scans_normals ? Point_normals::of_scans : Point_normals::across_branches;
+  static_assert(pcs::internal::is_parameter_v<Point_normals, NamedParameters, Tag>,
+                "pcs: named parameter `point_normals` must be a pcs::Point_normals");
+  constexpr bool has_map = pcs::internal::is_given_v<NamedParameters, CGAL::internal_np::normal_t>;
+  static_assert(has_map || !pcs::internal::is_given_v<NamedParameters, Tag>,
+                "pcs: named parameter `point_normals` needs a `normal_map`");
+  pcs::internal::read_parameter(np, Tag(), normals);
+  pcs::internal::check(have_scans_normals || normals != Point_normals::of_scans,
+                       caller,
+                       "`point_normals` are those of the scans, which needs trees that were added "
+                       "with normals; use `across_branches`");
+  return normals;
 }
 
 template <class NamedParameters>

@@ -183,11 +183,25 @@ struct Orl_weights
   double root = 1;
 };
 
+/// Returns the distance (4.7) of \cite aiteanu2022, without weights: over all edges `e`,
+///
+///     d = sum_e |r_e - r'_e| + |s_e - s'_e| + 2 acos |<q_e, q'_e>|.
+inline double published_distance(const Orl_coordinates& x, const Orl_coordinates& y)
+{
+  double total = 0;
+  for (std::size_t e = 0; e < x.length.size(); ++e)
+    total += std::abs(x.radius[e] - y.radius[e]) + std::abs(x.length[e] - y.length[e]) +
+             angle_between(x.orientation[e], y.orientation[e]);
+  return total;
+}
+
 inline double distance(const Orl_coordinates& x,
                        const Orl_coordinates& y,
                        const Orl_weights& w,
                        Orl_metric metric)
 {
+  if (metric == Orl_metric::published)
+    return published_distance(x, y);
   double total = 0;
   const auto add = [&](double difference) {
     total += metric == Orl_metric::square ? difference * difference : std::abs(difference);
@@ -257,14 +271,24 @@ orientation_at(const Quaternion& x, const Quaternion& y, double t, double max_ex
   return q;
 }
 
-/// Computes the tree at `t` on the path from `x` (0) to `y` (1) and beyond.
+/// Computes the tree at `t` on the path from `x` (0) to `y` (1) and beyond. With `linear`, lengths,
+/// radii and attachments continue linearly beyond the ends, within their range.
 inline void coordinates_at(const Orl_layout& layout,
                            const Orl_coordinates& x,
                            const Orl_coordinates& y,
                            double t,
                            double max_extrapolation_angle,
-                           Orl_coordinates& result)
+                           Orl_coordinates& result,
+                           Orl_extrapolation kind = Orl_extrapolation::bounded)
 {
+  const auto positive = [&](double a, double b) {
+    return kind == Orl_extrapolation::linear ? std::max(0.0, (1 - t) * a + t * b)
+                                             : positive_value(a, b, t);
+  };
+  const auto bounded = [&](double a, double b, double last) {
+    return kind == Orl_extrapolation::linear ? std::min(last, std::max(0.0, (1 - t) * a + t * b))
+                                             : bounded_value(a, b, t, last);
+  };
   const std::size_t n = layout.number_of_edges(), m = layout.branches.size();
   result.root = (1 - t) * x.root + t * y.root;
   result.orientation.resize(n);
@@ -275,14 +299,14 @@ inline void coordinates_at(const Orl_layout& layout,
   for (std::size_t e = 0; e < n; ++e) {
     result.orientation[e] =
         orientation_at(x.orientation[e], y.orientation[e], t, max_extrapolation_angle);
-    result.length[e] = positive_value(x.length[e], y.length[e], t);
-    result.radius[e] = positive_value(x.radius[e], y.radius[e], t);
+    result.length[e] = positive(x.length[e], y.length[e]);
+    result.radius[e] = positive(x.radius[e], y.radius[e]);
   }
   for (std::size_t b = 0; b < m; ++b) {
-    result.base_radius[b] = positive_value(x.base_radius[b], y.base_radius[b], t);
+    result.base_radius[b] = positive(x.base_radius[b], y.base_radius[b]);
     const std::size_t p = layout.branches[b].parent;
     const double last = p == none ? 0 : static_cast<double>(layout.branches[p].number_of_edges);
-    result.attachment[b] = bounded_value(x.attachment[b], y.attachment[b], t, last);
+    result.attachment[b] = bounded(x.attachment[b], y.attachment[b], last);
   }
 }
 

@@ -14,6 +14,7 @@ struct Path_options
 {
   double max_extrapolation_angle = 0; ///< largest rotation of an edge beyond the ends [rad]
   bool do_limit_radii = false;
+  Orl_extrapolation extrapolation = Orl_extrapolation::bounded;
   Branch_emergence emergence = Branch_emergence::simultaneous;
 };
 

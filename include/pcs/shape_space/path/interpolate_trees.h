@@ -30,10 +30,16 @@ inline void interpolate_trees(const Tree_family& family,
                               const char* caller,
                               Tree_state& result)
 {
-  coordinates_at(family.layout, a, b, t, options.max_extrapolation_angle, result.x);
+  coordinates_at(family.layout,
+                 a,
+                 b,
+                 t,
+                 options.max_extrapolation_angle,
+                 result.x,
+                 options.extrapolation);
   if (options.emergence == Branch_emergence::sequential && t > 0 && t < 1)
     Sequential_births(family.layout, result.births)(a, b, t, result.x);
-  if (t < 0 || t > 1)
+  if ((t < 0 || t > 1) && options.extrapolation == Orl_extrapolation::bounded)
     Extrapolation_limits(family.layout,
                          family.orientation,
                          family.up,

@@ -96,12 +96,14 @@ public:
   }
 
   /// Calls `put(i, point, normal, pair)` for all points of a tree; `i` is the index in the output.
+  /// Normals are those of the scans; with `is_across`, they are orthogonal to the edges.
   template <class ConcurrencyTag, class Put>
   void write(const Orl_layout& layout,
              const Orl_coordinates& x,
              const Orl_geometry& geometry,
              double lambda,
              Point_path path,
+             bool is_across,
              const std::vector<std::size_t>& offset,
              const Put& put,
              ConcurrencyTag) const
@@ -111,7 +113,10 @@ public:
         layout.number_of_edges(),
         [&](std::size_t e) {
           if (x.length[e] > 0 && m_first[e] < m_first[e + 1])
-            write_edge(edge_cone(layout, geometry, m_branch_of[e], e), e, s, path, offset[e], put);
+            write_edge(edge_cone(layout, geometry, m_branch_of[e], e),
+                       {e, s, path, is_across},
+                       offset[e],
+                       put);
         },
         64);
   }
@@ -140,30 +145,38 @@ private:
                 const std::array<Edge_cone, 2>& cone,
                 const std::array<std::vector<Vec3>, 2>& points) const;
 
-  bool are_flat(std::size_t e,
-                const std::array<Edge_cone, 2>& cone,
-                const std::array<std::vector<Vec3>, 2>& points) const;
+  /// Returns whether the sections of an edge are flat, and sets their thin directions.
+  bool find_flat(std::size_t e,
+                 const std::array<Edge_cone, 2>& cone,
+                 const std::array<std::vector<Vec3>, 2>& points);
 
   void set_pair(std::size_t k,
                 const std::array<Edge_cone, 2>& cone,
                 const std::array<std::vector<Vec3>, 2>& points,
                 const std::array<std::vector<Vec3>, 2>& normals);
 
-  template <class Put>
-  void write_edge(const Edge_cone& edge,
-                  std::size_t e,
-                  double s,
-                  Point_path path,
-                  std::size_t to,
-                  const Put& put) const
+  /// What is written of an edge.
+  struct Written_edge
   {
+    std::size_t edge;
+    double s; ///< parameter of the path, in [0, 1]
+    Point_path path;
+    bool is_across; ///< normals are orthogonal to the edge
+  };
+
+  template <class Put>
+  void
+  write_edge(const Edge_cone& edge, const Written_edge& what, std::size_t to, const Put& put) const
+  {
+    const std::size_t e = what.edge;
+    const double s = what.s;
     const bool is_relative = m_is_relative[e] != 0, is_flat = m_is_flat[e] != 0;
-    if (path == Point_path::virtual_edges) {
+    if (what.path == Point_path::virtual_edges) {
       for (std::size_t k = m_first[e]; k < m_first[e + 1]; ++k) {
         const double angle = is_flat ? 0 : m_lines[k].angle + s * m_lines[k].d_angle;
         put(to++,
             on_virtual_edge(edge, m_lines[k], is_relative, is_flat, s),
-            normal_at(edge, k, s, std::sin(angle), std::cos(angle)),
+            normal_at(edge, what, k, std::sin(angle), std::cos(angle)),
             k);
       }
       return;
@@ -190,15 +203,27 @@ private:
       }
       for (std::size_t i = 0; i < n; ++i) {
         const Vec3 p = edge.from + edge.frame * Vec3(px[i], py[i], pz[i]);
-        put(to++, p, normal_at(edge, begin + i, s, sines[i], cosines[i]), begin + i);
+        put(to++, p, normal_at(edge, what, begin + i, sines[i], cosines[i]), begin + i);
       }
     }
   }
 
   /// Returns the normal of a point, null without normals. `sine`, `cosine`: of the angle of the
   /// point.
-  Vec3 normal_at(const Edge_cone& edge, std::size_t k, double s, double sine, double cosine) const
+  Vec3 normal_at(const Edge_cone& edge,
+                 const Written_edge& what,
+                 std::size_t k,
+                 double sine,
+                 double cosine) const
   {
+    const double s = what.s;
+    if (what.is_across) {
+      if (!m_is_flat[what.edge])
+        return edge.frame * Vec3(cosine, sine, 0);
+      const auto& [begin, end] = m_thin_angle[what.edge];
+      const double angle = (1 - s) * begin + s * end;
+      return edge.frame * Vec3(std::cos(angle), std::sin(angle), 0);
+    }
     if (!m_has_normals)
       return Vec3::Zero();
     const auto& ends = m_normals[k];
@@ -236,6 +261,8 @@ private:
   std::vector<std::size_t> m_first; // pairs of each edge
   std::vector<std::uint32_t> m_branch_of;
   std::vector<char> m_is_relative, m_is_flat;
+  std::vector<std::array<double, 2>>
+      m_thin_angle; // of edges with flat sections: of the thin direction, in both trees [rad]
   std::vector<Line> m_lines;
   std::vector<std::array<Vec3, 2>>
       m_normals; // in the frame of the edge, rotated by the angle of the point

@@ -44,6 +44,7 @@ void Point_instances::set(const Orl_layout& layout,
     for (std::size_t j = 0; j < layout.branches[b].number_of_edges; ++j)
       m_branch_of[layout.branches[b].first_edge + j] = static_cast<std::uint32_t>(b);
   m_is_flat.assign(n, 0);
+  m_thin_angle.assign(n, {0, 0});
   m_lines.resize(m_pairs.size());
   m_has_normals = normals[0].size() == points[0].size() && normals[1].size() == points[1].size() &&
                   !(points[0].empty() && points[1].empty());
@@ -56,7 +57,7 @@ void Point_instances::set(const Orl_layout& layout,
         const std::array<Edge_cone, 2> cone = {edge_cone(layout, geometry[0], m_branch_of[e], e),
                                                edge_cone(layout, geometry[1], m_branch_of[e], e)};
         m_is_relative[e] = m_is_relative[e] && are_near(e, cone, points) ? 1 : 0;
-        m_is_flat[e] = !m_is_relative[e] && are_flat(e, cone, points) ? 1 : 0;
+        m_is_flat[e] = !m_is_relative[e] && find_flat(e, cone, points) ? 1 : 0;
         for (std::size_t k = m_first[e]; k < m_first[e + 1]; ++k)
           set_pair(k, cone, points, normals);
       },
@@ -78,18 +79,22 @@ inline bool Point_instances::are_near(std::size_t e,
   return true;
 }
 
-inline bool Point_instances::are_flat(std::size_t e,
-                                      const std::array<Edge_cone, 2>& cone,
-                                      const std::array<std::vector<Vec3>, 2>& points) const
+inline bool Point_instances::find_flat(std::size_t e,
+                                       const std::array<Edge_cone, 2>& cone,
+                                       const std::array<std::vector<Vec3>, 2>& points)
 {
+  std::array<double, 2>& angle = m_thin_angle[e];
   for (std::size_t t = 0; t < 2; ++t) {
     std::vector<Vec3> own;
     for (std::size_t k = m_first[e]; k < m_first[e + 1]; ++k)
       if (m_pairs[k].point[t] != no_point)
         own.push_back(points[t][m_pairs[k].point[t]]);
-    if (!section_across(cone[t], own).is_flat())
+    const Section section = section_across(cone[t], own);
+    if (!section.is_flat())
       return false;
+    angle[t] = std::atan2(section.axis.x(), -section.axis.y());
   }
+  angle[1] = angle[0] + std::remainder(angle[1] - angle[0], pcs::internal::pi); // without a sign
   return true;
 }
 

@@ -47,9 +47,9 @@ public:
       build(0, tubes.size());
   }
 
-  /// Returns the squared distance from the surface of a tube in units of the noise [-], and the
-  /// direction from its axis.
-  double misfit(std::size_t tube, const Vec3& p, Vec3* radial = nullptr) const
+  /// Returns the distance from the surface of a tube in units of the noise [-], which is negative
+  /// inside, and the direction from its axis.
+  double offset(std::size_t tube, const Vec3& p, Vec3* radial = nullptr) const
   {
     const Tube& t = m_tubes[tube];
     const Vec3 axis = t.to - t.from;
@@ -58,7 +58,12 @@ public:
     const double d = off.norm(), r = (1 - s) * t.from_radius + s * t.to_radius;
     if (radial)
       *radial = d > 0 ? Vec3(off / d) : Vec3(Vec3::Zero());
-    const double x = (d - r) / (m_noise * r + m_absolute);
+    return (d - r) / (m_noise * r + m_absolute);
+  }
+  /// Returns the square of `offset()`.
+  double misfit(std::size_t tube, const Vec3& p, Vec3* radial = nullptr) const
+  {
+    const double x = offset(tube, p, radial);
     return x * x;
   }
 
@@ -213,6 +218,20 @@ struct Tube_candidate
   double misfit; ///< squared distance in units of the noise [-]
 };
 
+/// Keeps the first of successive candidates of each branch.
+inline void keep_one_per_branch(const std::vector<Tube>& tubes, std::vector<Tube_candidate>& found)
+{
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    bool is_new = true;
+    for (std::size_t j = 0; j < kept && is_new; ++j)
+      is_new = tubes[found[j].tube].branch != tubes[found[k].tube].branch;
+    if (is_new)
+      found[kept++] = found[k];
+  }
+  found.resize(kept);
+}
+
 /// Finds the best tube of each branch that is about as near to `p` as the best branch, best first.
 inline void find_candidates(const std::vector<Tube>& tubes,
                             const Tube_tree& tree,
@@ -233,15 +252,9 @@ inline void find_candidates(const std::vector<Tube>& tubes,
   std::sort(found.begin(), found.end(), [](const Tube_candidate& a, const Tube_candidate& b) {
     return a.misfit != b.misfit ? a.misfit < b.misfit : a.tube < b.tube;
   });
-  std::size_t kept = 0;
-  for (std::size_t k = 0; k < found.size() && found[k].misfit <= least + margin; ++k) {
-    bool is_new = true;
-    for (std::size_t j = 0; j < kept && is_new; ++j)
-      is_new = tubes[found[j].tube].branch != tubes[found[k].tube].branch;
-    if (is_new)
-      found[kept++] = found[k];
-  }
-  found.resize(kept);
+  while (found.back().misfit > least + margin)
+    found.pop_back();
+  keep_one_per_branch(tubes, found);
 }
 
 /// Chooses the candidate with the least sum of its misfit and the squared angle between the normal
@@ -268,13 +281,61 @@ inline std::size_t choose_by_normal(const Tube_tree& tree,
   return result;
 }
 
+/// Finds the candidates of section 4.7 of \cite aiteanu2022: the nearest tube of each branch whose
+/// axis is at most `1 + noise` radii away from `p`, or else the tube with the nearest surface.
+/// Misfits are signed, in units of the radius. `tree`: with a noise of 1.
+inline void find_published_candidates(const std::vector<Tube>& tubes,
+                                      const Tube_tree& tree,
+                                      double noise,
+                                      const Vec3& p,
+                                      std::vector<Tube_candidate>& found)
+{
+  found.clear();
+  double most = std::numeric_limits<double>::infinity();
+  tree.search(p, [&](std::size_t tube, double) {
+    if (const double offset = tree.offset(tube, p); offset <= most) {
+      found.push_back({tube, offset});
+      most = std::min(most, std::max(noise, offset));
+    }
+    return most * most;
+  });
+  std::sort(found.begin(), found.end(), [](const Tube_candidate& a, const Tube_candidate& b) {
+    return a.misfit != b.misfit ? a.misfit < b.misfit : a.tube < b.tube;
+  });
+  std::size_t number = 1;
+  while (number < found.size() && found[number].misfit <= noise)
+    ++number;
+  found.resize(number);
+  keep_one_per_branch(tubes, found);
+}
+
+/// Chooses the candidate whose normal has the least angle to `normal` after projection to the plane
+/// of two branches [Aiteanu 2022, figure 4.4]. In this plane, the normal of a branch is
+/// perpendicular to its axis, so the axis with the least component of `normal` is taken. The part
+/// of `normal` across the plane has no component along either axis. More than two candidates are
+/// compared one after the other, from the nearest, which remains if components are equal.
+inline std::size_t choose_in_plane(const std::vector<Tube>& tubes,
+                                   const std::vector<Tube_candidate>& candidates,
+                                   const Vec3& normal)
+{
+  const auto along = [&](std::size_t tube) {
+    return std::abs((tubes[tube].to - tubes[tube].from).stableNormalized().dot(normal));
+  };
+  constexpr double rounding = 1e-12;
+  std::size_t result = candidates.front().tube;
+  for (std::size_t k = 1; k < candidates.size(); ++k)
+    if (along(candidates[k].tube) < along(result) - rounding)
+      result = candidates[k].tube;
+  return result;
+}
+
 } // namespace internal
 
 /*!
   Assigns each point to a tube of the branch with the nearest surface, in units of the noise. At
   forks, where several branches are about as near, the angle between the normal of the point and the
   direction away from the axis also counts. `normals` may be empty: then they are estimated,
-  at forks only.
+  at forks only. `Point_assignment::by_normal` is the published rule: normals alone decide at forks.
 */
 template <class ConcurrencyTag>
 std::vector<std::size_t> assign_points(const std::vector<Vec3>& points,
@@ -286,11 +347,22 @@ std::vector<std::size_t> assign_points(const std::vector<Vec3>& points,
   std::vector<std::size_t> result(points.size(), none);
   if (points.empty() || tubes.empty())
     return result;
-  const Tube_tree tree(tubes, options.noise, internal::absolute_noise(points, tubes, extent));
+  const bool is_published = options.rule == Point_assignment::by_normal;
+  constexpr double least_radius = 1e-9; // of the extent: radii may be 0
+  const Tube_tree tree(tubes,
+                       is_published ? 1 : options.noise,
+                       is_published ? least_radius * extent
+                                    : internal::absolute_noise(points, tubes, extent));
+  const auto find = [&](const Vec3& p, std::vector<internal::Tube_candidate>& found) {
+    if (is_published)
+      internal::find_published_candidates(tubes, tree, options.noise, p, found);
+    else
+      internal::find_candidates(tubes, tree, p, found);
+  };
   std::vector<char> is_ambiguous(points.size(), 0);
   pcs::internal::for_each_index<ConcurrencyTag>(points.size(), [&](std::size_t i) {
     thread_local std::vector<internal::Tube_candidate> found;
-    internal::find_candidates(tubes, tree, points[i], found);
+    find(points[i], found);
     result[i] = found.front().tube;
     is_ambiguous[i] = found.size() > 1;
   });
@@ -298,12 +370,15 @@ std::vector<std::size_t> assign_points(const std::vector<Vec3>& points,
   pcs::internal::for_each_index<ConcurrencyTag>(points.size(), [&](std::size_t i) {
     if (is_ambiguous[i]) {
       thread_local std::vector<internal::Tube_candidate> found;
-      internal::find_candidates(tubes, tree, points[i], found);
+      find(points[i], found);
       const Vec3 normal =
           normals.empty()
               ? internal::estimate_normal(points, search, i, options.number_of_neighbors)
               : normals[i];
-      result[i] = internal::choose_by_normal(tree, found, points[i], normal, options.normal_angle);
+      result[i] =
+          is_published
+              ? internal::choose_in_plane(tubes, found, normal)
+              : internal::choose_by_normal(tree, found, points[i], normal, options.normal_angle);
     }
     result[i] = side_of_bend(tubes, result[i], points[i]);
   });
