@@ -727,6 +727,11 @@ BOOST_AUTO_TEST_CASE(the_way_back_has_the_same_branches_and_is_as_long)
     for (const pcs::Branch_match& m : back.matches())
       two.insert({m.tip[1], m.tip[0]});
     BOOST_TEST((one == two));
+    for (const pcs::Branch_match& m : there.matches())
+      for (const pcs::Branch_match& n : back.matches())
+        if (m.tip[0] == n.tip[1] && m.tip[1] == n.tip[0] && m.tip[0] != pcs::npos &&
+            m.tip[1] != pcs::npos)
+          BOOST_TEST(std::abs(m.confidence - n.confidence) < 1e-6);
     const double distance = there.distance(0, 1);
     BOOST_TEST(std::abs(back.distance(0, 1) - distance) < 1e-6 * distance);
   }

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
 // Growth of the same tree: fraction of branches that are matched to themselves after pruning,
-// turning, shifting, stretching and scaling.
+// turning, shifting, stretching and scaling, also by the confidence of their matches.
 
 #include <pcs/IO/read_swc.h>
 #include <pcs/IO/read_txtskl.h>
@@ -32,12 +32,42 @@ struct Options
 /// Percentages of branches that are matched to themselves for each of `turns`.
 using Shares = std::array<double, 3>;
 
+/// Numbers of correct and of all matches with confidences in one interval.
+class Confidence_table
+{
+public:
+  void add(double confidence, bool is_right)
+  {
+    std::size_t k = 0;
+    while (k + 1 < m_begin.size() && confidence >= m_begin[k + 1])
+      ++k;
+    ++m_all[k];
+    m_right[k] += is_right ? 1 : 0;
+  }
+  void print() const
+  {
+    std::printf("\n| confidence | matches | correct [%%] |\n|---|---|---|\n");
+    for (std::size_t k = 0; k < m_begin.size(); ++k)
+      if (m_all[k] > 0)
+        std::printf("| %.2f to %.2f | %zu | %.1f |\n",
+                    m_begin[k],
+                    k + 1 < m_begin.size() ? m_begin[k + 1] : 1.0,
+                    m_all[k],
+                    100 * double(m_right[k]) / double(m_all[k]));
+  }
+
+private:
+  static constexpr std::array<double, 6> m_begin = {0, 0.05, 0.1, 0.2, 0.4, 0.7};
+  std::array<std::size_t, 6> m_all = {}, m_right = {};
+};
+
 /// Returns the percentage of the branches of `b` that are matched to themselves.
 double share(const orl_bench::Tree& a,
              const std::vector<std::size_t>& names_a,
              const orl_bench::Tree& b,
              const std::vector<std::size_t>& names_b,
-             bool is_published)
+             bool is_published,
+             Confidence_table& confidences)
 {
   namespace np = pcs::parameters;
   pcs::Orl_shape_space<orl_bench::Kernel> space;
@@ -48,13 +78,18 @@ double share(const orl_bench::Tree& a,
   space.build(np::matching_weights(weights));
   double right = 0;
   for (const pcs::Branch_match& m : space.matches())
-    if (m.tip[0] != pcs::npos && m.tip[1] != pcs::npos)
-      right += names_a[m.tip[0]] == names_b[m.tip[1]] ? 1 : 0;
+    if (m.tip[0] != pcs::npos && m.tip[1] != pcs::npos) {
+      const bool is_right = names_a[m.tip[0]] == names_b[m.tip[1]];
+      right += is_right ? 1 : 0;
+      if (!is_published && m.parent != pcs::npos)
+        confidences.add(m.confidence, is_right);
+    }
   return 100 * right / orl_bench::number_of_names(names_b);
 }
 
 /// Returns the mean percentages of a tree, with the energies of pcs and as published.
-std::array<Shares, 2> measure(const std::string& file, const Options& o)
+std::array<Shares, 2>
+measure(const std::string& file, const Options& o, Confidence_table& confidences)
 {
   orl_bench::Tree original;
   if (file.size() > 4 && file.substr(file.size() - 4) == ".swc")
@@ -72,7 +107,8 @@ std::array<Shares, 2> measure(const std::string& file, const Options& o)
       const auto a = orl_bench::put_together(branches, names_a);
       const auto b = orl_bench::put_together(orl_bench::grow(branches, growth, seed), names_b);
       for (std::size_t published = 0; published < (o.is_pcs_only ? 1 : 2); ++published)
-        result[published][s] += share(a, names_a, b, names_b, published == 1) / o.seeds;
+        result[published][s] +=
+            share(a, names_a, b, names_b, published == 1, confidences) / o.seeds;
     }
   return result;
 }
@@ -129,10 +165,11 @@ int main(int argc, char** argv)
   std::printf(o.is_pcs_only ? "| tree | 0.1 rad | 0.3 rad | 0.5 rad |\n|---|---|---|---|\n"
                             : "| tree | 0.1 rad | 0.3 rad | 0.5 rad | published 0.1 | 0.3 | 0.5 |\n"
                               "|---|---|---|---|---|---|---|\n");
+  Confidence_table confidences; // with the energy of pcs, without trunks
   std::array<Shares, 2> mean = {}, worst = {};
   for (std::size_t i = 0; i < o.files.size(); ++i) {
     const std::string& file = o.files[i];
-    const std::array<Shares, 2> shares = measure(file, o);
+    const std::array<Shares, 2> shares = measure(file, o, confidences);
     print(file.substr(file.rfind('/') + 1), shares, o.is_pcs_only);
     for (std::size_t p = 0; p < 2; ++p)
       for (std::size_t s = 0; s < turns.size(); ++s) {
@@ -142,5 +179,6 @@ int main(int argc, char** argv)
   }
   print("mean", mean, o.is_pcs_only);
   print("worst", worst, o.is_pcs_only);
+  confidences.print();
   return 0;
 }

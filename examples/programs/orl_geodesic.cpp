@@ -134,10 +134,14 @@ pcs::Branch_emergence branch_emergence(const Space& space, const Options& o)
 std::string matches_text(const Space& space, const Tree_file& one, const Tree_file& two)
 {
   std::ostringstream text;
-  text << "tip_a,tip_b\n";
-  for (const pcs::Branch_match& m : space.matches())
+  text << "tip_a,tip_b,confidence\n";
+  for (const pcs::Branch_match& m : space.matches()) {
     text << (m.tip[0] == pcs::npos ? -1 : one.ids[m.tip[0]]) << ','
-         << (m.tip[1] == pcs::npos ? -1 : two.ids[m.tip[1]]) << '\n';
+         << (m.tip[1] == pcs::npos ? -1 : two.ids[m.tip[1]]) << ',';
+    if (std::isfinite(m.confidence))
+      text << m.confidence;
+    text << '\n';
+  }
   return text.str();
 }
 

@@ -273,14 +273,15 @@ public:
     return has_branch(h, b) ? family().tip[h][b] : npos;
   }
 
-  //! pairs of corresponding branches of two trees, parents first
+  //! pairs of corresponding branches of two trees, with their confidences, parents first
   std::vector<Branch_match> matches() const
   {
     check_two_trees("pcs::Orl_shape_space::matches()");
     std::vector<Branch_match> result;
     for (std::size_t b = 0; b < family().layout.branches.size(); ++b)
-      result.push_back(
-          {family().layout.branches[b].parent, {family().tip[0][b], family().tip[1][b]}});
+      result.push_back({family().layout.branches[b].parent,
+                        {family().tip[0][b], family().tip[1][b]},
+                        m_state.pair.topology.branches[b].confidence});
     return result;
   }
 

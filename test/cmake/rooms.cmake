@@ -153,6 +153,7 @@ set(shape_space_pair
   embedding/skip_fold_edges.h
   input/tree_input.h
   matching/Branch_matching.h
+  matching/Match_confidences.h
   matching/build_topology.h
   matching/find_yaw_candidates.h
   points/Point_instances.h

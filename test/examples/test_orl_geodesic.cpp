@@ -147,7 +147,7 @@ BOOST_AUTO_TEST_CASE(every_place_on_the_path_has_points_and_a_skeleton)
   std::istringstream lines(content("m.csv"));
   std::string line;
   std::getline(lines, line);
-  BOOST_TEST(line == "tip_a,tip_b");
+  BOOST_TEST(line == "tip_a,tip_b,confidence");
   const orl_test::Tree a = swc("a.swc"), b = swc("b.swc");
   std::size_t both = 0, single = 0;
   while (std::getline(lines, line)) {
@@ -161,6 +161,10 @@ BOOST_AUTO_TEST_CASE(every_place_on_the_path_has_points_and_a_skeleton)
         BOOST_TEST(out_degree(static_cast<std::size_t>(tip) - 1, *tree) == 0u);
       }
     ++(tip_a > 0 && tip_b > 0 ? both : single);
+    const std::string confidence = line.substr(line.rfind(',') + 1);
+    BOOST_TEST(confidence.empty() == (tip_a < 0 || tip_b < 0));
+    if (!confidence.empty())
+      BOOST_TEST((std::stod(confidence) >= 0 && std::stod(confidence) <= 1));
   }
   const Json r = Json::parse(content("r.json"));
   BOOST_TEST(r["number_of_matched_branches"].get<std::size_t>() == both);

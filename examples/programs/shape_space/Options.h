@@ -214,7 +214,8 @@ Exit codes: 0 success, 1 bad input or usage, 2 internal error.)");
   app.add_option("--output", o.output, "folder for the results; created if missing")->required();
   app.add_option("--matches",
                  o.matches,
-                 "write the ids of the tips of matched branches here (CSV)");
+                 "write the ids of the tips of matched branches, and the confidence of each match, "
+                 "here (CSV)");
   app.add_option("--report", o.report, "write distances, counts and seconds here (JSON)");
   app.add_option("--correspondences",
                  o.correspondences,

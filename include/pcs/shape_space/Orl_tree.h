@@ -55,6 +55,11 @@ struct Branch_match
   std::size_t parent = npos; ///< index of the match of the parents, `npos` for the trunks
   /// Index of the vertex at the tip in each tree; `npos`: the tree lacks the branch.
   std::array<std::size_t, 2> tip = {npos, npos};
+  //! How certain the match is, in [0, 1]: `D / (C + D)` for a pair of energy `C`, without which
+  //! the energy of the matching increases at least by `D`; but at most that of the parents. 0:
+  //! another match is as good, 0.5: the alternative costs twice as much as the pair. NaN if a tree
+  //! lacks the branch, or the correspondences were given to `build_from()`. [-]
+  double confidence = std::numeric_limits<double>::quiet_NaN();
 };
 
 } // namespace pcs

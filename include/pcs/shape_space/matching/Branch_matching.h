@@ -10,6 +10,7 @@
 #include <pcs/internal/progress.h>
 #include <pcs/shape_space/matching/Matching_energy.h>
 #include <pcs/shape_space/matching/Matching_memo.h>
+#include <pcs/shape_space/matching/compare_branches.h>
 #include <pcs/shape_space/matching/linear_assignment.h>
 #include <pcs/shape_space/model/Branch_paths.h>
 #include <pcs/shape_space/model/Matched_branch.h>
@@ -86,9 +87,43 @@ public:
   /// not include this rotation. [rad]
   void set_turn(double angle, const Vec3& axis)
   {
+    const Eigen::Matrix3d before = m_rotation;
     m_rotation = Eigen::AngleAxisd(angle, m_energy.frame().transpose() * axis).toRotationMatrix();
+    if (m_rotation == before)
+      return;
     for (Matching_memo& answers : m_known)
       answers.forget();
+  }
+
+  /// Returns the rotation with which two children of branches with a given rotation are matched.
+  Eigen::Matrix3d inherited_rotation(std::size_t start_1,
+                                     std::size_t start_2,
+                                     const Eigen::Matrix3d& rotation) const
+  {
+    return Matching_key(start_1, start_2, rotation * m_rotation.transpose()).rotation() *
+           m_rotation;
+  }
+  /// Returns the rotation of tree 2 as a whole.
+  const Eigen::Matrix3d& rotation() const { return m_rotation; }
+  /// Returns the cost of two children, if they have been matched, or a lower bound.
+  double known_cost(std::size_t start_1, std::size_t start_2, const Eigen::Matrix3d& rotation) const
+  {
+    const Matching_key question(start_1, start_2, rotation * m_rotation.transpose());
+    for (const std::size_t k : {1, 0})
+      if (const Matching_memo::Result* const answer = m_known[k].find(question))
+        return *answer ? (*answer)->cost : std::numeric_limits<double>::infinity();
+    return m_energy.least_cost(start_1, start_2, question.rotation() * m_rotation);
+  }
+
+  /// Matches two children, with one trial per pair of branches; infinity if they cost as much
+  /// as unmatched.
+  double quick_match(std::size_t start_1, std::size_t start_2, const Eigen::Matrix3d& rotation)
+  {
+    const Matching_key question(start_1, start_2, rotation * m_rotation.transpose());
+    const Matching_memo::Result* answer = m_known[1].find(question);
+    m_effort = 1;
+    const Result result = answer ? *answer : match(start_1, start_2, rotation);
+    return result ? result->cost : std::numeric_limits<double>::infinity();
   }
 
   /// Returns the cost of the most promising trunks, with one trial per pair of children. [-]
@@ -155,8 +190,6 @@ private:
   using Children = Matching_energy::Children;
 
   static constexpr std::size_t most_at_once = 512; // children that are assigned at a time
-  static constexpr int number_of_passes = 3;       // of rotation from curve and children
-  static constexpr double rematch_threshold = 0.4; // Frobenius norm: a rotation by about 0.3 rad
   static constexpr double trunk_slack = 1.05;      // relative error of the cost with one trial
 
   Result match(std::size_t start_1, std::size_t start_2, const Eigen::Matrix3d& rotation)
@@ -202,14 +235,7 @@ private:
     const bool is_turned = m_energy.is_turned(), is_alone = paths_1.size() * paths_2.size() == 1;
     std::vector<Trial> chosen;
     const auto take = [&](std::size_t p1, std::size_t p2) {
-      // if one has no children, no attachment depends on the correspondence of the curves
-      const bool is_leaf =
-          m_energy.path(0, p1).children.empty() || m_energy.path(1, p2).children.empty();
-      Trial trial = m_energy.match_curves(p1,
-                                          p2,
-                                          rotation,
-                                          is_leaf ? Matching_energy::few_samples
-                                                  : Matching_energy::number_of_samples);
+      Trial trial = first_trial(m_energy, p1, p2, rotation);
       if (is_turned || trial.cost < limit)
         chosen.push_back(std::move(trial));
     };
@@ -255,41 +281,35 @@ private:
 
   /// Matches the subtrees on two curves. Returns null as soon as the cost is known not to be below
   /// `limit`.
-  Result match_children(Trial trial, const Eigen::Matrix3d& rotation, double limit)
+  Result match_children(Trial first, const Eigen::Matrix3d& rotation, double limit)
   {
-    const Branch_path &path_1 = m_energy.path(0, trial.path_1),
-                      &path_2 = m_energy.path(1, trial.path_2);
-    if (!m_energy.is_turned() && trial.cost >= limit)
+    const Branch_path &path_1 = m_energy.path(0, first.path_1),
+                      &path_2 = m_energy.path(1, first.path_2);
+    if (!m_energy.is_turned() && first.cost >= limit)
       return nullptr;
-    const Children a = m_energy.children_of(0, path_1, trial.last[0], nullptr);
-    Children b = m_energy.children_of(1, path_2, trial.last[1], &trial.gamma);
-    const auto find_rotation = [&] {
-      return m_energy.turn(trial, a, b, rotation, number_of_passes);
-    };
-    Eigen::Matrix3d turned = find_rotation();
+    const Compared_branches both = compare_branches(m_energy, std::move(first), rotation);
+    const Trial& trial = both.trial;
     auto result = std::make_shared<Matched_branch>();
-    result->cost = trial.cost;
-    if (m_energy.is_turned()) {
-      if ((turned - rotation).norm() > rematch_threshold) {
-        // the new rotation improves the correspondence of the curves
-        trial = m_energy.match_curves(trial.path_1, trial.path_2, turned, trial.gamma.size());
-        b = m_energy.children_of(1, path_2, trial.last[1], &trial.gamma);
-        turned = find_rotation();
-      }
-      result->cost = m_energy.turned_energy(trial, rotation, turned);
-    }
+    result->cost =
+        m_energy.is_turned() ? m_energy.turned_energy(trial, rotation, both.rotation) : trial.cost;
     result->cost += m_energy.rest_cost(trial.path_1, trial.path_2, trial.last);
     if (result->cost >= limit)
       return nullptr;
     result->path_1 = trial.path_1;
     result->path_2 = trial.path_2;
     result->last = trial.last;
-    result->rotation = m_energy.frame() * turned * m_energy.frame().transpose();
-    for (const double w : a.weight)
+    result->rotation = m_energy.frame() * both.rotation * m_energy.frame().transpose();
+    for (const double w : both.children[0].weight)
       result->cost += m_energy.single_term(w);
-    for (const double w : b.weight)
+    for (const double w : both.children[1].weight)
       result->cost += m_energy.single_term(w);
-    if (!assign_children(path_1, path_2, a, b, turned, limit, *result))
+    if (!assign_children(path_1,
+                         path_2,
+                         both.children[0],
+                         both.children[1],
+                         both.rotation,
+                         limit,
+                         *result))
       return nullptr;
     return result;
   }

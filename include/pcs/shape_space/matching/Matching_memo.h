@@ -72,9 +72,9 @@ public:
   using Result = std::shared_ptr<const Matched_branch>;
 
   /// Returns null if there is no entry. The result of an entry may also be null.
-  const Result* find(const Matching_key& key)
+  const Result* find(const Matching_key& key) const
   {
-    Shard& shard = shard_of(key);
+    const Shard& shard = m_shards[shard_of(key)];
     const std::lock_guard<std::mutex> lock(shard.mutex);
     const auto it = shard.results.find(key);
     return it == shard.results.end() ? nullptr : &it->second; // rehashing keeps addresses
@@ -82,7 +82,7 @@ public:
 
   void keep(const Matching_key& key, const Result& result)
   {
-    Shard& shard = shard_of(key);
+    Shard& shard = m_shards[shard_of(key)];
     const std::lock_guard<std::mutex> lock(shard.mutex);
     shard.results.emplace(key, result);
   }
@@ -96,12 +96,12 @@ public:
 private:
   struct Shard
   {
-    std::mutex mutex;
+    mutable std::mutex mutex;
     std::unordered_map<Matching_key, Result, Matching_key::Hash> results;
   };
-  Shard& shard_of(const Matching_key& key)
+  std::size_t shard_of(const Matching_key& key) const
   {
-    return m_shards[Matching_key::Hash()(key) % m_shards.size()];
+    return Matching_key::Hash()(key) % m_shards.size();
   }
 
   std::array<Shard, 64> m_shards;

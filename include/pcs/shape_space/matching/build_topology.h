@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -191,8 +192,11 @@ public:
   {
   }
 
-  std::vector<Common_branch> run(const Matched_branch& trunk)
+  /// `confidences`: of the matched branches, by their first node in tree 1.
+  std::vector<Common_branch> run(const Matched_branch& trunk,
+                                 const std::unordered_map<std::size_t, double>& confidences = {})
   {
+    m_confidences = &confidences;
     add_pair(trunk, none, 0, 0);
     return std::move(m_branches);
   }
@@ -253,6 +257,9 @@ private:
       branch.node[0].push_back(p.a);
       branch.node[1].push_back(p.b);
     }
+    if (const auto it = m_confidences->find(one.nodes[parent == none ? 0 : 1]);
+        it != m_confidences->end())
+      branch.confidence = it->second;
     const std::size_t id = m_branches.size();
     m_branches.push_back(branch);
 
@@ -299,6 +306,7 @@ private:
 
   std::array<const Rooted_tree*, 2> m_trees;
   std::array<Branch_paths, 2>& m_paths;
+  const std::unordered_map<std::size_t, double>* m_confidences = nullptr;
   Elastic_matcher m_matcher{65, 6};
   std::vector<Common_branch> m_branches;
 };

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace pcs {
@@ -26,6 +27,9 @@ struct Common_branch
   std::array<double, 2> attachment = {
       0,
       0}; ///< on the parent: number of a node, plus the fraction of the next edge
+  /// of the correspondence of both branches, see `Match_confidences`; NaN if it is not known, or
+  /// the branch is virtual in a tree [-]
+  double confidence = std::numeric_limits<double>::quiet_NaN();
   std::size_t number_of_nodes() const { return std::max(node[0].size(), node[1].size()); }
   bool is_virtual(int tree) const { return path[static_cast<std::size_t>(tree)] == none; }
 };

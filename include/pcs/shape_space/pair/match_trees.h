@@ -9,6 +9,7 @@
 #include <pcs/internal/progress.h>
 #include <pcs/shape_space/embedding/refine_yaw.h>
 #include <pcs/shape_space/matching/Branch_matching.h>
+#include <pcs/shape_space/matching/Match_confidences.h>
 #include <pcs/shape_space/matching/build_topology.h>
 #include <pcs/shape_space/matching/find_yaw_candidates.h>
 #include <pcs/shape_space/model/Common_topology.h>
@@ -99,11 +100,13 @@ private:
     return {least, m_weights.unmatched * (a + b) - least};
   }
 
-  void build(const Matching& matching, const Result& trunk, bool is_at_tips, const Range& from)
+  void build(Matching& matching, const Result& trunk, bool is_at_tips, const Range& from)
   {
+    matching.set_turn(m_cost.yaw, m_alignment.up);
+    const auto confidences = Match_confidences<ConcurrencyTag>(matching).run(*trunk);
     m_result.paths = {matching.paths(0), matching.paths(1)};
     internal::Topology_builder builder(*m_trees[0], *m_trees[1], m_result.paths);
-    m_result.branches = builder.run(*trunk);
+    m_result.branches = builder.run(*trunk, confidences);
     if (m_cost.yaw != 0)
       m_cost.yaw = refine_yaw(m_trees, m_result, m_alignment.up, m_cost.yaw);
     m_cost.is_at_tips = is_at_tips;
