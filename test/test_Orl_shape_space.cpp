@@ -15,6 +15,7 @@
 #include <support/threads.h>
 #include <support/trees.h>
 
+#include <boost/graph/adjacency_list.hpp>
 #include <boost/test/unit_test.hpp>
 
 #include <array>
@@ -266,6 +267,59 @@ BOOST_AUTO_TEST_CASE(the_ends_of_the_path_are_the_inputs)
       BOOST_TEST(std::sqrt(least) < 1e-12 * 1e3);
     }
   }
+}
+
+BOOST_AUTO_TEST_CASE(the_skeleton_is_written_to_any_mutable_graph)
+{
+  // Vertices of a list have no index.
+  struct Place
+  {
+    Point point;
+    float radius = 0;
+    int branch = -1;
+  };
+  using Graph = boost::adjacency_list<boost::listS, boost::listS, boost::bidirectionalS, Place>;
+  const Tree a = random_tree(71, 4, 2), b = random_tree(72, 4, 2);
+  Space space;
+  space.add_skeleton(a);
+  space.add_skeleton(b);
+  space.build();
+  const pcs::Orl_tree middle = space.geodesic(0, 1, 0.5);
+  Tree expected;
+  space.skeleton(middle, expected);
+  const auto check = [&](const Graph& graph) {
+    BOOST_TEST_REQUIRE(num_vertices(graph) == num_vertices(expected));
+    BOOST_TEST(num_edges(graph) == num_edges(expected));
+    std::vector<Graph::vertex_descriptor> vertex;
+    for (auto [v, end] = vertices(graph); v != end; ++v)
+      vertex.push_back(*v);
+    for (std::size_t k = 0; k < vertex.size(); ++k) {
+      BOOST_TEST((graph[vertex[k]].point == expected[k].point));
+      BOOST_TEST(graph[vertex[k]].radius == static_cast<float>(expected[k].radius));
+      BOOST_TEST(graph[vertex[k]].branch == static_cast<int>(expected[k].branch));
+    }
+    for (auto [e, end] = edges(expected); e != end; ++e)
+      BOOST_TEST(edge(vertex[source(*e, expected)], vertex[target(*e, expected)], graph).second);
+  };
+  Graph graph(3); // its contents are replaced
+  const auto maps = [](Graph& g) {
+    return np::node_point_map(get(&Place::point, g))
+        .node_radius_map(get(&Place::radius, g))
+        .node_branch_map(get(&Place::branch, g));
+  };
+  space.skeleton(middle, graph, maps(graph));
+  check(graph);
+  Graph other;
+  std::vector<Point> points;
+  pcs::orl_geodesic(a,
+                    std::vector<Point>(),
+                    b,
+                    std::vector<Point>(),
+                    0.5,
+                    other,
+                    points,
+                    maps(other));
+  check(other);
 }
 
 BOOST_AUTO_TEST_CASE(the_report_tells_what_had_no_room_in_the_other_scan)

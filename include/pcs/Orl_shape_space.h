@@ -15,6 +15,7 @@
 #include <pcs/core/errors.h>
 #include <pcs/core/parameters/check_value.h>
 #include <pcs/core/parameters/read_parameter.h>
+#include <pcs/core/parameters/result_graph.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
 #include <pcs/shape_space/Orl_tree.h>
@@ -481,6 +482,45 @@ public:
                                 family().origin,
                                 do_keep ? -1 : shape_space::internal::least_length(geometry),
                                 result);
+  }
+
+  /*!
+    \brief writes a tree of the space to a graph of the caller, as the function above.
+
+    \tparam Graph a mutable graph of Boost, with edges from parent to child
+    \param result receives the skeleton; its vertices and edges are replaced. Vertices are added in
+        the order of the function above, parents first
+    \npbegin
+      \np{node_point_map} where the position of a vertex is written [L]
+        \nptype writable, key: vertex, value: a point with `x()`, `y()`, `z()`
+        \npdefault none: it is required
+      \np{node_radius_map} where the radius of a vertex is written [L]
+        \nptype writable, key: vertex, value: a floating-point number
+        \npdefault none: it is required
+      \np{node_branch_map} where the number of the branch of a vertex is written; 0 is the trunk
+        \nptype writable, key: vertex, value: an integer
+        \npdefault none
+      \np{do_keep_absent_branches} as above
+        \nptype `bool`
+        \npdefault `false`
+    \npend
+    \throws pcs::Invalid_input as above; the graph is unchanged
+  */
+  template <class Graph, class NamedParameters = parameters::Default_named_parameters>
+  std::enable_if_t<!pcs::internal::is_tree_skeleton_v<Graph>>
+  skeleton(const Orl_tree& t, Graph& result, const NamedParameters& np = NamedParameters()) const
+  {
+    constexpr bool is_graph = pcs::internal::Is_mutable_graph<Graph>::value;
+    static_assert(is_graph,
+                  "pcs::Orl_shape_space::skeleton(): the result must be a pcs::Tree_skeleton or a "
+                  "mutable graph of Boost, with add_vertex() and add_edge()");
+    if constexpr (is_graph) {
+      Tree_skeleton<CGAL::Simple_cartesian<double>> tree;
+      skeleton(t,
+               tree,
+               parameters::do_keep_absent_branches(shape_space::read_do_keep_absent_branches(np)));
+      shape_space::write_graph(tree, np, result);
+    }
   }
 
   /*!

@@ -280,7 +280,7 @@ public:
       }
       Skeleton_report report = m_resampled->report(); // before `tree` changes
       if (session().report().status == Status::converged)
-        skeleton::internal::write_or_clear(tree, [&] {
+        internal::write_or_clear(tree, [&] {
           if constexpr (is_ready_made)
             skeleton::fill_ready_made(session().tree(), session().scan().frame, tree);
           else

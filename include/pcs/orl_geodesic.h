@@ -7,7 +7,7 @@
 
 #include <pcs/Orl_shape_space.h>
 
-#include <CGAL/Kernel_traits.h>
+#include <CGAL/Simple_cartesian.h>
 
 #include <iterator>
 #include <type_traits>
@@ -28,9 +28,11 @@ namespace pcs {
   \param tree_a, tree_b graphs, see `Orl_shape_space::add()`
   \param scan_a, scan_b points of the trees; may be empty
   \param lambda position on the path, finite [-]
-  \param out_tree a `pcs::Tree_skeleton`, replaced
+  \param out_tree a `pcs::Tree_skeleton`, or a mutable graph of Boost with `node_point_map` and
+      `node_radius_map` in `np`, see `Orl_shape_space::skeleton()`; replaced
   \param out_points a container with `resize()`, replaced
-  \param np named parameters of `build()`, `geodesic()` and `points()`
+  \param np named parameters of `build()`, `geodesic()` and `points()`; for a graph of Boost, also
+      of `skeleton()`
   \param np_a, np_b named parameters of `add()` for the trees
   \return the report of `build()`; unless its status is `Status::converged`, the outputs are
       unchanged
@@ -40,7 +42,7 @@ template <class ConcurrencyTag = CGAL::Parallel_if_available_tag,
           class PointRangeA,
           class TreeGraphB,
           class PointRangeB,
-          class OutKernel,
+          class OutTree,
           class OutPointRange,
           class NamedParameters = parameters::Default_named_parameters,
           class NamedParametersA = parameters::Default_named_parameters,
@@ -50,21 +52,36 @@ Orl_report orl_geodesic(const TreeGraphA& tree_a,
                         const TreeGraphB& tree_b,
                         const PointRangeB& scan_b,
                         double lambda,
-                        Tree_skeleton<OutKernel>& out_tree,
+                        OutTree& out_tree,
                         OutPointRange& out_points,
                         const NamedParameters& np = NamedParameters(),
                         const NamedParametersA& np_a = NamedParametersA(),
                         const NamedParametersB& np_b = NamedParametersB())
 {
-  Orl_shape_space<OutKernel, ConcurrencyTag> space;
-  const auto a = space.add(tree_a, scan_a, np_a);
-  const auto b = space.add(tree_b, scan_b, np_b);
-  Orl_report report = space.build(np);
-  if (report.status != Status::converged)
-    return report;
-  const Orl_tree tree = space.geodesic(a, b, lambda, np);
-  space.points(tree, out_points, np);
-  space.skeleton(tree, out_tree);
+  constexpr bool is_tree = pcs::internal::is_tree_skeleton_v<OutTree>;
+  constexpr bool is_graph = is_tree || pcs::internal::Is_mutable_graph<OutTree>::value;
+  static_assert(
+      is_graph,
+      "pcs::orl_geodesic(): `out_tree` must be a pcs::Tree_skeleton or a mutable graph of "
+      "Boost, with add_vertex() and add_edge()");
+  Orl_report report;
+  if constexpr (is_graph) {
+    Orl_shape_space<CGAL::Simple_cartesian<double>, ConcurrencyTag> space;
+    const auto a = space.add(tree_a, scan_a, np_a);
+    const auto b = space.add(tree_b, scan_b, np_b);
+    report = space.build(np);
+    if (report.status != Status::converged)
+      return report;
+    const Orl_tree tree = space.geodesic(a, b, lambda, np);
+    space.points(tree, out_points, np);
+    if constexpr (is_tree)
+      space.skeleton(tree, out_tree);
+    else {
+      Tree_skeleton<CGAL::Simple_cartesian<double>> skeleton;
+      space.skeleton(tree, skeleton);
+      shape_space::write_graph(skeleton, np, out_tree);
+    }
+  }
   return report;
 }
 

@@ -52,7 +52,10 @@ void check_space_names(const NamedParameters& np)
                              tags::do_limit_radii_t,
                              tags::branch_emergence_t,
                              tags::point_path_t,
-                             tags::point_normals_t>(np);
+                             tags::point_normals_t,
+                             tags::node_point_map_t,
+                             tags::node_radius_map_t,
+                             tags::node_branch_map_t>(np);
 }
 
 template <class NamedParameters>
@@ -265,8 +268,11 @@ Change_limits read_change_limits(const NamedParameters& np, const std::string& c
 template <class NamedParameters>
 bool read_do_keep_absent_branches(const NamedParameters& np)
 {
-  using Tag = pcs::internal_np::do_keep_absent_branches_t;
-  pcs::internal::check_names<Tag>(np);
+  namespace tags = pcs::internal_np;
+  using Tag = tags::do_keep_absent_branches_t;
+  pcs::internal::
+      check_names<Tag, tags::node_point_map_t, tags::node_radius_map_t, tags::node_branch_map_t>(
+          np);
   bool do_keep = false;
   static_assert(pcs::internal::is_parameter_v<bool, NamedParameters, Tag>,
                 "pcs: named parameter `do_keep_absent_branches` must be a bool");

@@ -5,14 +5,19 @@
 #ifndef PCS_SHAPE_SPACE_INPUT_WRITE_SKELETON_H
 #define PCS_SHAPE_SPACE_INPUT_WRITE_SKELETON_H
 
+#include <pcs/Named_function_parameters.h>
+#include <pcs/concepts.h>
 #include <pcs/core/Tree_skeleton.h>
+#include <pcs/core/parameters/result_graph.h>
 #include <pcs/shape_space/model/Orl_coordinates.h>
 
 #include <boost/graph/adjacency_list.hpp>
+#include <boost/graph/graph_traits.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -140,6 +145,60 @@ void write_skeleton(const Orl_layout& layout,
     }
   }
   result = std::move(tree);
+}
+
+/// Replaces a graph that is not a `Tree_skeleton` by the nodes and edges of one. Writes positions
+/// and radii to the maps `node_point_map` and `node_radius_map`, and branches to `node_branch_map`
+/// if it is given.
+template <class Kernel, class NamedParameters, class Graph>
+void write_graph(const Tree_skeleton<Kernel>& tree, const NamedParameters& np, Graph& result)
+{
+  namespace tags = pcs::internal_np;
+  using pcs::internal::is_given_v;
+  constexpr bool are_given = is_given_v<NamedParameters, tags::node_point_map_t> &&
+                             is_given_v<NamedParameters, tags::node_radius_map_t>;
+  static_assert(are_given,
+                "pcs: a result graph that is not a pcs::Tree_skeleton needs the named parameters "
+                "`node_point_map` and `node_radius_map`");
+  if constexpr (are_given) {
+    using Vertex = typename boost::graph_traits<Graph>::vertex_descriptor;
+    const auto point_map = CGAL::parameters::get_parameter(np, tags::node_point_map);
+    const auto radius_map = CGAL::parameters::get_parameter(np, tags::node_radius_map);
+    using P = Map_value<std::decay_t<decltype(point_map)>>;
+    using R = Map_value<std::decay_t<decltype(radius_map)>>;
+    constexpr bool are_maps = is_writable_point_map_v<std::decay_t<decltype(point_map)>, Vertex> &&
+                              std::is_floating_point_v<R> &&
+                              is_map_for_v<std::decay_t<decltype(radius_map)>, Vertex, R>;
+    static_assert(
+        are_maps,
+        "pcs: `node_point_map` and `node_radius_map` must be writable, accept a vertex of "
+        "the result as key, and store points with x(), y(), z() and floating point "
+        "numbers");
+    if constexpr (are_maps) {
+      using FT = std::decay_t<decltype(std::declval<const P&>().x())>;
+      pcs::internal::clear_graph(result);
+      std::vector<Vertex> vertex;
+      for (std::size_t v = 0; v < num_vertices(tree); ++v) {
+        const auto& node = tree[v];
+        vertex.push_back(add_vertex(result));
+        put(point_map,
+            vertex.back(),
+            P(FT(node.point.x()), FT(node.point.y()), FT(node.point.z())));
+        put(radius_map, vertex.back(), static_cast<R>(node.radius));
+      }
+      for (auto [e, end] = edges(tree); e != end; ++e)
+        add_edge(vertex[source(*e, tree)], vertex[target(*e, tree)], result);
+      if constexpr (is_given_v<NamedParameters, tags::node_branch_map_t>) {
+        const auto map = CGAL::parameters::get_parameter(np, tags::node_branch_map);
+        using B = Map_value<std::decay_t<decltype(map)>>;
+        static_assert(std::is_integral_v<B> && is_map_for_v<std::decay_t<decltype(map)>, Vertex, B>,
+                      "pcs: `node_branch_map` must be writable, accept a vertex of the result as "
+                      "key, and store integers");
+        for (std::size_t v = 0; v < vertex.size(); ++v)
+          put(map, vertex[v], static_cast<B>(tree[v].branch));
+      }
+    }
+  }
 }
 
 } // namespace shape_space

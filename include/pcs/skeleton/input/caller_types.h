@@ -9,6 +9,7 @@
 #include <pcs/concepts.h>
 #include <pcs/core/Tree_skeleton.h>
 #include <pcs/core/parameters/check_value.h>
+#include <pcs/core/parameters/result_graph.h>
 #include <pcs/skeleton/model/Given_skeleton.h>
 #include <pcs/skeleton/model/Scan.h>
 
@@ -103,29 +104,8 @@ struct Is_range_of_points<
 template <class T>
 constexpr bool is_range_of_points_v = Is_range_of_points<T>::value;
 
-template <class Graph, class = void>
-struct Is_mutable_graph : std::false_type
-{
-};
-template <class Graph>
-struct Is_mutable_graph<
-    Graph,
-    std::void_t<decltype(add_vertex(std::declval<Graph&>())),
-                decltype(add_edge(
-                    std::declval<typename boost::graph_traits<Graph>::vertex_descriptor>(),
-                    std::declval<typename boost::graph_traits<Graph>::vertex_descriptor>(),
-                    std::declval<Graph&>()))>> : std::true_type
-{
-};
-
-template <class Kernel>
-std::true_type test_tree_skeleton(const Tree_skeleton<Kernel>*);
-std::false_type test_tree_skeleton(const void*);
-
-/// Whether `Graph` is a `Tree_skeleton`, or a class derived from one.
-template <class Graph>
-constexpr bool is_tree_skeleton_v =
-    decltype(test_tree_skeleton(static_cast<const Graph*>(nullptr)))::value;
+using pcs::internal::Is_mutable_graph;
+using pcs::internal::is_tree_skeleton_v;
 
 /// Whether `Map` takes branch indices: integers other than bool.
 template <class Map, class Key>

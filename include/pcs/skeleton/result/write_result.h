@@ -8,6 +8,7 @@
 #include <pcs/Named_function_parameters.h>
 #include <pcs/concepts.h>
 #include <pcs/core/Tree_skeleton.h>
+#include <pcs/core/parameters/result_graph.h>
 #include <pcs/skeleton/model/Branch_tree.h>
 #include <pcs/skeleton/model/Scan_frame.h>
 
@@ -62,43 +63,6 @@ void fill_ready_made(const Branch_tree& found, const Scan_frame& frame, Graph& t
 
 namespace internal {
 
-template <class Graph, class = void>
-struct Has_clear : std::false_type
-{
-};
-template <class Graph>
-struct Has_clear<Graph, std::void_t<decltype(std::declval<Graph&>().clear())>> : std::true_type
-{
-};
-
-/// Removes all vertices. For graphs without `clear()`, removes them one after the other; with
-/// vertices in a vector, each removal is O(size).
-template <class Graph>
-void clear_graph(Graph& graph)
-{
-  if constexpr (Has_clear<Graph>::value)
-    graph.clear();
-  else
-    while (num_vertices(graph) > 0) {
-      const auto v = *vertices(graph).first;
-      clear_vertex(v, graph);
-      remove_vertex(v, graph);
-    }
-}
-
-/// Calls `write()`, which writes to a graph. The graph is empty if this throws, for example because
-/// memory runs out.
-template <class Graph, class Write>
-void write_or_clear(Graph& graph, const Write& write)
-{
-  try {
-    write();
-  } catch (...) {
-    clear_graph(graph);
-    throw;
-  }
-}
-
 /// Writes one value per vertex to the map of a named parameter, if it is given. `value(k)` is the
 /// value of node `k`; `Is_value` holds for the permitted value types of the map.
 template <class Tag, template <class> class Is_value, class NamedParameters, class Vertex, class F>
@@ -148,7 +112,7 @@ void write_graph(const Branch_tree& found,
                 "z() and floating point numbers");
   if constexpr (are_maps_ok) {
     using FT = std::decay_t<decltype(std::declval<const P&>().x())>;
-    internal::clear_graph(tree);
+    pcs::internal::clear_graph(tree);
     std::vector<Vertex> vertex;
     vertex.reserve(found.nodes.size());
     for (std::size_t k = 0; k < found.nodes.size(); ++k)
