@@ -43,6 +43,8 @@ namespace shape_space {
 template <class ConcurrencyTag>
 class Branch_matching
 {
+  using Result = std::shared_ptr<const Matched_branch>;
+
 public:
   /// `paths`: the candidate paths of all branches of the trees.
   Branch_matching(const Rooted_tree& tree_1,
@@ -91,17 +93,16 @@ public:
     m_rotation = Eigen::AngleAxisd(angle, m_energy.frame().transpose() * axis).toRotationMatrix();
     if (m_rotation == before)
       return;
-    for (Matching_memo& answers : m_known)
+    for (Matching_memo<Result>& answers : m_known)
       answers.forget();
+    m_simple.forget();
   }
 
-  /// Returns the rotation with which two children of branches with a given rotation are matched.
-  Eigen::Matrix3d inherited_rotation(std::size_t start_1,
-                                     std::size_t start_2,
-                                     const Eigen::Matrix3d& rotation) const
+  /// Returns the rotation with which children of branches with a given rotation are matched. It is
+  /// rounded, and bounds of costs hold for it only.
+  Eigen::Matrix3d inherited_rotation(const Eigen::Matrix3d& rotation) const
   {
-    return Matching_key(start_1, start_2, rotation * m_rotation.transpose()).rotation() *
-           m_rotation;
+    return Matching_key(0, 0, rotation * m_rotation.transpose()).rotation() * m_rotation;
   }
   /// Returns the rotation of tree 2 as a whole.
   const Eigen::Matrix3d& rotation() const { return m_rotation; }
@@ -109,8 +110,10 @@ public:
   double known_cost(std::size_t start_1, std::size_t start_2, const Eigen::Matrix3d& rotation) const
   {
     const Matching_key question(start_1, start_2, rotation * m_rotation.transpose());
+    if (const double* const cost = m_simple.find(question))
+      return *cost;
     for (const std::size_t k : {1, 0})
-      if (const Matching_memo::Result* const answer = m_known[k].find(question))
+      if (const Result* const answer = m_known[k].find(question))
         return *answer ? (*answer)->cost : std::numeric_limits<double>::infinity();
     return m_energy.least_cost(start_1, start_2, question.rotation() * m_rotation);
   }
@@ -120,10 +123,9 @@ public:
   double quick_match(std::size_t start_1, std::size_t start_2, const Eigen::Matrix3d& rotation)
   {
     const Matching_key question(start_1, start_2, rotation * m_rotation.transpose());
-    const Matching_memo::Result* answer = m_known[1].find(question);
+    const Result* answer = m_known[1].find(question);
     m_effort = 1;
-    const Result result = answer ? *answer : match(start_1, start_2, rotation);
-    return result ? result->cost : std::numeric_limits<double>::infinity();
+    return answer ? Answer(*answer).cost : match(start_1, start_2, rotation).cost;
   }
 
   /// Returns the cost of the most promising trunks, with one trial per pair of children. [-]
@@ -181,25 +183,38 @@ public:
       if (Result result = match_children(std::move(trial), rotation, best ? best->cost : most_cost))
         best = std::move(result);
     }
-    return best;
+    return best ? completed(*best) : nullptr;
   }
 
 private:
-  using Result = std::shared_ptr<const Matched_branch>;
   using Trial = Matching_energy::Trial;
   using Children = Matching_energy::Children;
 
   static constexpr std::size_t most_at_once = 512; // children that are assigned at a time
   static constexpr double trunk_slack = 1.05;      // relative error of the cost with one trial
+  static constexpr double unknown = -1;            // cost that was not computed
 
-  Result match(std::size_t start_1, std::size_t start_2, const Eigen::Matrix3d& rotation)
+  /// The cost of two children, infinite if they cost as much as unmatched [-], and their matching.
+  /// The matching of a simple pair is made at the end of the search, see `completed()`.
+  struct Answer
+  {
+    Answer(double c) : cost(c) {}
+    Answer(const Result& r) : cost(r ? r->cost : std::numeric_limits<double>::infinity()), branch(r)
+    {
+    }
+    double cost;
+    Result branch;
+  };
+
+  Answer match(std::size_t start_1, std::size_t start_2, const Eigen::Matrix3d& rotation)
   {
     const Matching_key question(start_1, start_2, rotation * m_rotation.transpose());
-    Matching_memo& known = m_known[m_effort == 1 ? 0 : 1];
+    if (is_simple(start_1, start_2))
+      return simple_cost(question, start_1, start_2);
+    Matching_memo<Result>& known = m_known[m_effort == 1 ? 0 : 1];
     if (const Result* const answer = known.find(question))
       return *answer;
-    double limit = m_energy.single_term(m_energy.weight(0, start_1)) +
-                   m_energy.single_term(m_energy.weight(1, start_2));
+    double limit = single_cost(start_1, start_2);
     const Eigen::Matrix3d turned = question.rotation() * m_rotation;
     Result best;
     for (Trial& trial : find_trials(start_1, start_2, turned, limit, m_effort))
@@ -209,6 +224,82 @@ private:
       }
     known.keep(question, best);
     return best;
+  }
+
+  /// Returns the cost of two subtrees that are not matched. [-]
+  double single_cost(std::size_t start_1, std::size_t start_2) const
+  {
+    return m_energy.single_term(m_energy.weight(0, start_1)) +
+           m_energy.single_term(m_energy.weight(1, start_2));
+  }
+
+  /// Returns whether two branches have a single path each, and one of them has no children. Then
+  /// there is one trial and no choice, and only the cost is kept: most pairs are of this kind.
+  bool is_simple(std::size_t start_1, std::size_t start_2) const
+  {
+    const auto &paths_1 = paths(0).paths_of[start_1], &paths_2 = paths(1).paths_of[start_2];
+    return paths_1.size() == 1 && paths_2.size() == 1 &&
+           (m_energy.path(0, paths_1[0]).children.empty() ||
+            m_energy.path(1, paths_2[0]).children.empty());
+  }
+
+  /// Returns the cost of a simple pair, or infinity if it costs as much as unmatched. [-]
+  double simple_cost(const Matching_key& question, std::size_t start_1, std::size_t start_2)
+  {
+    if (const double* const known = m_simple.find(question))
+      return *known;
+    const double limit = single_cost(start_1, start_2);
+    const Eigen::Matrix3d turned = question.rotation() * m_rotation;
+    const std::size_t p1 = paths(0).paths_of[start_1][0], p2 = paths(1).paths_of[start_2][0];
+    double cost = std::numeric_limits<double>::infinity();
+    if (m_energy.weights().curve * m_energy.least_energy(p1, p2, turned) +
+            m_energy.least_difference(start_1, start_2) <
+        limit) {
+      Trial trial = first_trial(m_energy, p1, p2, turned);
+      if (m_energy.is_turned() || trial.cost < limit)
+        cost = single_children_cost(compare_branches(m_energy, std::move(trial), turned), turned);
+    }
+    if (!(cost < limit))
+      cost = std::numeric_limits<double>::infinity();
+    m_simple.keep(question, cost);
+    return cost;
+  }
+
+  /// Returns the cost of two branches whose children are unmatched. [-]
+  double single_children_cost(const Compared_branches& both, const Eigen::Matrix3d& inherited) const
+  {
+    const Trial& trial = both.trial;
+    double cost =
+        m_energy.is_turned() ? m_energy.turned_energy(trial, inherited, both.rotation) : trial.cost;
+    cost += m_energy.rest_cost(trial.path_1, trial.path_2, trial.last);
+    for (const Children& children : both.children)
+      for (const double w : children.weight)
+        cost += m_energy.single_term(w);
+    return cost;
+  }
+
+  /// Returns a copy of a matching with the matchings of its simple pairs.
+  Result completed(const Matched_branch& match)
+  {
+    auto result = std::make_shared<Matched_branch>(match);
+    const Eigen::Matrix3d rotation =
+        m_energy.frame().transpose() * match.rotation * m_energy.frame();
+    for (Matched_branch::Pair& pair : result->pairs) {
+      const std::size_t start_1 = m_energy.path(0, match.path_1).children[pair.child_1].start;
+      const std::size_t start_2 = m_energy.path(1, match.path_2).children[pair.child_2].start;
+      if (pair.branch) {
+        pair.branch = completed(*pair.branch);
+        continue;
+      }
+      const Eigen::Matrix3d turned = inherited_rotation(rotation);
+      pair.branch = match_children(first_trial(m_energy,
+                                               paths(0).paths_of[start_1][0],
+                                               paths(1).paths_of[start_2][0],
+                                               turned),
+                                   turned,
+                                   std::numeric_limits<double>::infinity());
+    }
+    return result;
   }
 
   /// Returns the nodes after the compared parts of two paths, or their tips.
@@ -387,18 +478,24 @@ private:
   {
     const std::size_t n = rows.size(), m = columns.size();
     std::vector<double> gain(n * m);
-    std::vector<Result> exact(n * m);
+    std::vector<Answer> exact(n * m, Answer(unknown));
     const double parent_length = m_energy.length(0, result.path_1);
     const auto rest = [&](std::size_t i, std::size_t j) {
       return m_energy.position_term(a.length[i], b.length[j], a.s[i], b.s[j], parent_length) -
              m_energy.single_term(a.weight[i]) - m_energy.single_term(b.weight[j]);
     };
-    for (std::size_t r = 0; r < n; ++r)
-      for (std::size_t c = 0; c < m; ++c)
-        gain[r * m + c] = m_energy.least_cost(path_1.children[rows[r]].start,
-                                              path_2.children[columns[c]].start,
-                                              turned) +
-                          rest(rows[r], columns[c]);
+    std::array<std::vector<std::size_t>, 2> starts;
+    for (const std::size_t i : rows)
+      starts[0].push_back(a.start[i]);
+    for (const std::size_t j : columns)
+      starts[1].push_back(b.start[j]);
+    // with the rounded rotation of the exact costs, otherwise some bounds exceed them
+    m_energy.least_costs(starts[0],
+                         starts[1],
+                         inherited_rotation(turned),
+                         [&](std::size_t r, std::size_t c, double least) {
+                           gain[r * m + c] = least + rest(rows[r], columns[c]);
+                         });
     Assignment assignment(n, m, gain);
     assignment.solve();
     const std::vector<std::size_t>& partner = assignment.columns();
@@ -409,20 +506,21 @@ private:
       for (std::size_t r = 0; r < n; ++r)
         if (partner[r] != none) {
           bound += gain[r * m + partner[r]];
-          if (!exact[r * m + partner[r]])
+          if (exact[r * m + partner[r]].cost == unknown)
             wanted.push_back(r);
         }
       if (bound >= limit)
         return false;
       if (wanted.empty())
         break;
+      keep_heaviest(a, b, rows, columns, partner, wanted);
       pcs::internal::for_each_index<ConcurrencyTag>(
           wanted.size(),
           [&](std::size_t k) {
             const std::size_t r = wanted[k], c = partner[r], i = rows[r], j = columns[c];
-            Result& found = exact[r * m + c];
+            Answer& found = exact[r * m + c];
             found = match(path_1.children[i].start, path_2.children[j].start, turned);
-            gain[r * m + c] = found ? found->cost + rest(i, j) : 0;
+            gain[r * m + c] = std::isfinite(found.cost) ? found.cost + rest(i, j) : 0;
           },
           1);
       assignment.raise(wanted);
@@ -430,17 +528,39 @@ private:
     for (std::size_t r = 0; r < n; ++r)
       if (partner[r] != none) {
         result.cost += gain[r * m + partner[r]];
-        result.pairs.push_back({rows[r], columns[partner[r]], exact[r * m + partner[r]]});
+        result.pairs.push_back({rows[r], columns[partner[r]], exact[r * m + partner[r]].branch});
       }
     return true;
+  }
+
+  /// Keeps the rows of the heaviest pairs: if the cost exceeds the limit, few pairs often show it.
+  static void keep_heaviest(const Children& a,
+                            const Children& b,
+                            const std::vector<std::size_t>& rows,
+                            const std::vector<std::size_t>& columns,
+                            const std::vector<std::size_t>& partner,
+                            std::vector<std::size_t>& wanted)
+  {
+    constexpr std::size_t fewest = 16, part = 3;
+    const std::size_t number = std::max(fewest, wanted.size() / part);
+    if (wanted.size() <= number)
+      return;
+    const auto weight = [&](std::size_t r) {
+      return a.weight[rows[r]] + b.weight[columns[partner[r]]];
+    };
+    std::stable_sort(wanted.begin(), wanted.end(), [&](std::size_t r, std::size_t s) {
+      return weight(r) > weight(s);
+    });
+    wanted.resize(number);
   }
 
   Matching_energy m_energy;
   Eigen::Matrix3d m_rotation = Eigen::Matrix3d::Identity(); // of tree 2
   bool m_uses_other_trunks = false;
   std::size_t m_number_of_trials, m_most_trunk_trials;
-  std::size_t m_effort = m_number_of_trials; // trials per pair below the trunks
-  std::array<Matching_memo, 2> m_known;      // with one trial per pair, and with more
+  std::size_t m_effort = m_number_of_trials;    // trials per pair below the trunks
+  std::array<Matching_memo<Result>, 2> m_known; // with one trial per pair, and with more
+  Matching_memo<double> m_simple;               // costs of simple pairs
 };
 
 } // namespace shape_space

@@ -100,10 +100,7 @@ private:
       const std::size_t start_1 = both.children[0].start[p.child_1];
       const double least = std::min(own[p.child_1], confidence);
       m_result[start_1] = least;
-      add_children(
-          *p.branch,
-          m_matching.inherited_rotation(start_1, both.children[1].start[p.child_2], both.rotation),
-          least);
+      add_children(*p.branch, m_matching.inherited_rotation(both.rotation), least);
     }
   }
 

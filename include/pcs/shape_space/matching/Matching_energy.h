@@ -7,6 +7,7 @@
 
 #include <pcs/core/Orl_options.h>
 #include <pcs/core/rotations.h>
+#include <pcs/internal/constants.h>
 #include <pcs/shape_space/matching/Path_curves.h>
 #include <pcs/shape_space/matching/align_vectors.h>
 #include <pcs/shape_space/matching/elastic_curves.h>
@@ -120,18 +121,7 @@ public:
   /// cones of tangents around both mean directions.
   double least_energy(std::size_t p1, std::size_t p2, const Eigen::Matrix3d& rotation) const
   {
-    const Sampled_curve &a = curves(0)[p1], &b = curves(1)[p2];
-    double length_1 = a.length, length_2 = b.length;
-    if (is_cut(length_1, length_2)) // the beginning of a curve is in nearly the same cone
-      length_1 = length_2 = std::min(length_1, length_2);
-    const double cosine = std::min(1.0, std::max(-1.0, a.direction.dot(rotation * b.direction)));
-    const double angle = std::max(0.0, std::acos(cosine) - a.spread - b.spread);
-    if (m_weights.is_published || !m_weights.is_rotation_inherited)
-      return elastic_energy(length_1, length_2, std::max(0.0, std::cos(angle)) * (1 + 1e-12));
-    // a rotation of the branch may compensate for part of the angle
-    const double t = m_weights.rotation;
-    const double gain = std::sqrt(1 + t * t + 2 * t * std::cos(angle)) - t;
-    return elastic_energy(length_1, length_2, gain * (1 + 1e-12));
+    return least_energy_at(p1, p2, rotation * curves(1)[p2].direction);
   }
 
   /// Bounds the cost of two subtrees from below: the excess length of one of them is stretched or
@@ -143,6 +133,29 @@ public:
       for (const std::size_t p2 : paths(1).paths_of[start_2])
         least = std::min(least, least_energy(p1, p2, rotation));
     return m_weights.curve * least + least_difference(start_1, start_2);
+  }
+
+  /// Calls `take(r, c, cost)` with `least_cost()` of all pairs of the first nodes `starts_1` and
+  /// `starts_2`.
+  template <class Take>
+  void least_costs(const std::vector<std::size_t>& starts_1,
+                   const std::vector<std::size_t>& starts_2,
+                   const Eigen::Matrix3d& rotation,
+                   const Take& take) const
+  {
+    std::vector<std::pair<std::size_t, Vec3>> turned; // paths of tree 2 and their directions
+    for (std::size_t c = 0; c < starts_2.size(); ++c) {
+      turned.clear();
+      for (const std::size_t p2 : paths(1).paths_of[starts_2[c]])
+        turned.emplace_back(p2, rotation * curves(1)[p2].direction);
+      for (std::size_t r = 0; r < starts_1.size(); ++r) {
+        double least = std::numeric_limits<double>::infinity();
+        for (const std::size_t p1 : paths(0).paths_of[starts_1[r]])
+          for (const auto& [p2, direction] : turned)
+            least = std::min(least, least_energy_at(p1, p2, direction));
+        take(r, c, m_weights.curve * least + least_difference(starts_1[r], starts_2[c]));
+      }
+    }
   }
 
   double least_difference(std::size_t start_1, std::size_t start_2) const
@@ -363,6 +376,35 @@ public:
   }
 
 private:
+  /// Bounds the elastic energy from below, where `direction` is the rotated mean direction of
+  /// path 2.
+  double least_energy_at(std::size_t p1, std::size_t p2, const Vec3& direction) const
+  {
+    const Sampled_curve &a = curves(0)[p1], &b = curves(1)[p2];
+    double length_1 = a.length, length_2 = b.length;
+    if (is_cut(length_1, length_2)) // the beginning of a curve is in nearly the same cone
+      length_1 = length_2 = std::min(length_1, length_2);
+    const double cosine = least_angle_cosine(a, b, a.direction.dot(direction));
+    if (m_weights.is_published || !m_weights.is_rotation_inherited)
+      return elastic_energy(length_1, length_2, std::max(0.0, cosine) * (1 + 1e-12));
+    // a rotation of the branch may compensate for part of the angle
+    const double t = m_weights.rotation;
+    const double gain = std::sqrt(1 + t * t + 2 * t * cosine) - t;
+    return elastic_energy(length_1, length_2, gain * (1 + 1e-12));
+  }
+
+  /// Returns the cosine of the angle between the cones of tangents of two curves, whose mean
+  /// directions have the cosine `dot`.
+  static double least_angle_cosine(const Sampled_curve& a, const Sampled_curve& b, double dot)
+  {
+    const double x = std::min(1.0, std::max(-1.0, dot));
+    const double cosine = a.cosine * b.cosine - a.sine * b.sine; // of the sum of both spreads
+    if (a.spread + b.spread >= pcs::internal::pi || x >= cosine)
+      return 1;
+    const double sine = a.sine * b.cosine + a.cosine * b.sine;
+    return x * cosine + std::sqrt(1 - x * x) * sine;
+  }
+
   /// Returns the elastic energy of curves whose tangents agree by `agreement`. If there is a
   /// separate term for lengths, the elastic energy excludes their difference: otherwise a branch
   /// that grew to four times its length would stay unmatched even if nothing else had changed.

@@ -6,14 +6,12 @@
 #define PCS_SHAPE_SPACE_MATCHING_MATCHING_MEMO_H
 
 #include <pcs/core/rotations.h>
-#include <pcs/shape_space/model/Matched_branch.h>
 
 #include <Eigen/Core>
 
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <memory>
 #include <mutex>
 #include <unordered_map>
 
@@ -65,46 +63,46 @@ private:
   std::array<int, 3> m_rotation;
 };
 
-/// Results of matchings by key, for any number of threads.
+/// Values by key, for any number of threads.
+template <class Value>
 class Matching_memo
 {
 public:
-  using Result = std::shared_ptr<const Matched_branch>;
-
-  /// Returns null if there is no entry. The result of an entry may also be null.
-  const Result* find(const Matching_key& key) const
+  /// Returns null if there is no entry; the value stays where it is until `forget()`.
+  const Value* find(const Matching_key& key) const
   {
     const Shard& shard = m_shards[shard_of(key)];
     const std::lock_guard<std::mutex> lock(shard.mutex);
-    const auto it = shard.results.find(key);
-    return it == shard.results.end() ? nullptr : &it->second; // rehashing keeps addresses
+    const auto it = shard.values.find(key);
+    return it == shard.values.end() ? nullptr : &it->second; // rehashing keeps addresses
   }
 
-  void keep(const Matching_key& key, const Result& result)
+  void keep(const Matching_key& key, const Value& value)
   {
     Shard& shard = m_shards[shard_of(key)];
     const std::lock_guard<std::mutex> lock(shard.mutex);
-    shard.results.emplace(key, result);
+    shard.values.emplace(key, value);
   }
 
   void forget()
   {
     for (Shard& shard : m_shards)
-      shard.results.clear();
+      shard.values.clear();
   }
 
 private:
   struct Shard
   {
     mutable std::mutex mutex;
-    std::unordered_map<Matching_key, Result, Matching_key::Hash> results;
+    std::unordered_map<Matching_key, Value, Matching_key::Hash> values;
   };
-  std::size_t shard_of(const Matching_key& key) const
+  static std::size_t shard_of(const Matching_key& key)
   {
-    return Matching_key::Hash()(key) % m_shards.size();
+    return Matching_key::Hash()(key) % number_of_shards;
   }
 
-  std::array<Shard, 64> m_shards;
+  static constexpr std::size_t number_of_shards = 64;
+  std::array<Shard, number_of_shards> m_shards;
 };
 
 } // namespace shape_space

@@ -47,6 +47,7 @@ struct Sampled_curve
   double length = 0;              ///< [L]
   Vec3 direction = Vec3::UnitZ(); ///< unit vector of the mean tangent
   double spread = 0;              ///< largest angle between `direction` and a tangent [rad]
+  double cosine = 1, sine = 0;    ///< of `spread`
 };
 
 /// Returns the point at arc length `s` on a polyline. [L]
@@ -86,7 +87,9 @@ sample_curve(const Rooted_tree& tree, const Branch_path& path, std::size_t n, st
   double smallest = 1;
   for (Eigen::Index i = 0; i < size; ++i)
     smallest = std::min(smallest, curve.direction.dot(curve.tangents.col(i)));
-  curve.spread = std::acos(std::max(-1.0, smallest));
+  curve.cosine = std::max(-1.0, smallest);
+  curve.spread = std::acos(curve.cosine);
+  curve.sine = std::sqrt(1 - curve.cosine * curve.cosine);
   return curve;
 }
 
