@@ -9,8 +9,8 @@
 #include <pcs/concepts.h>
 #include <pcs/core/Skeleton_report.h>
 #include <pcs/core/Tree_skeleton.h>
-#include <pcs/core/parameters/result_graph.h>
 #include <pcs/core/errors.h>
+#include <pcs/core/parameters/result_graph.h>
 #include <pcs/internal/progress.h>
 #include <pcs/skeleton/Resampled_session.h>
 #include <pcs/skeleton/Session.h>
