@@ -27,6 +27,7 @@ RUNS = [
     ("Deformation: table 2.1", "bench_deform_table_2_1", ["--data", "{data}"]),
     ("Deformation: all points as samples, beside CGAL", "bench_full_resolution", []),
     ("Deformation: known answers, beside CGAL", "bench_deformation_quality", ["--peers"]),
+    ("Deformation: linear solvers, beside Eigen and CHOLMOD", "bench_linear_solvers", []),
     ("Deformation: neighbour links", "bench_neighbor_links", []),
     ("Nonrigid registration", "bench_fit_point_set", ["--data", "{data}"]),
     ("Gaussian splats", "bench_splats", []),
