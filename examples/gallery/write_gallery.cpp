@@ -86,5 +86,10 @@ int main(int argc, char** argv)
                "write_gallery");
   gallery::Options options;
   declare(app, options);
-  return program::run_program(app, argc, argv, [&options] { return work(options); });
+  return program::run_program(
+      app,
+      argc,
+      argv,
+      "--rest model.ply --deformed deformed.ply --page examples/gallery/page --output page.html",
+      [&options] { return work(options); });
 }
