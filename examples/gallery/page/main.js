@@ -32,7 +32,7 @@ async function attempt(work) {
 const liveText =
     'Drag the coloured handles. pcs deforms all points in every frame, in this browser.';
 const keysOfViews =
-    'Drag to turn, scroll to zoom, and drag with the right button to shift. On the ' +
+    'Drag to turn, scroll to zoom, and drag with the right button to pan. On the ' +
     'keyboard: arrow keys turn, + and − zoom, 0 shows everything.';
 const keysOfProbe = ' Enter shows the values at the centre.';
 const keysOfEditor = ' Shift with the arrow keys applies the chosen tool to the handle of the ' +
