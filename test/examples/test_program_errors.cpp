@@ -279,13 +279,20 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(usage_errors)
 
+BOOST_FIXTURE_TEST_CASE(without_arguments_there_is_an_example, Deform_run)
+{
+  BOOST_TEST(run("") == 1);
+  for (const char* word : {"Deforms a point cloud", "Example: deform_point_set --input", "--help"})
+    BOOST_TEST(err.find(word) != std::string::npos, word << " in " << err);
+  BOOST_TEST(std::count(err.begin(), err.end(), '\n') == 3);
+}
+
 BOOST_FIXTURE_TEST_CASE(the_command_line_is_checked, Deform_run)
 {
   write("edit.json", edit_of({parse("{" + head + R"(, "fixed": true})")}).dump());
   const auto refuses_usage = [&](const std::string& args, const std::vector<std::string>& words) {
     refuses(*this, args, words, args);
   };
-  refuses_usage("", {"Deforms a point cloud", "Example: deform_point_set --input", "--help"});
   refuses_usage("--default-edit", {"--input is required"});
   refuses_usage("--input in.ply --default-edit", {"--output is required"});
   refuses_usage("--input in.ply --output out.ply", {"exactly one of --edit and --default-edit"});

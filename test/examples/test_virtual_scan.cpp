@@ -132,7 +132,7 @@ BOOST_AUTO_TEST_CASE(a_tree_from_a_file_can_be_scanned)
 
 BOOST_AUTO_TEST_CASE(bad_input_is_refused_and_touches_no_file)
 {
-  refuses(*this, "", "--output");
+  refuses(*this, "--seed 1", "--output");
   refuses(*this, "--output scan.ply --preset oak", "unknown preset 'oak'");
   refuses(*this, "--output scan.ply --step-degrees 0", "angular_step");
   refuses(*this, "--output scan.ply --step-degrees abc", "--step-degrees");
