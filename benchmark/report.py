@@ -37,6 +37,7 @@ RUNS = [
     ("Stands: slopes and thin ground", "evaluate_stands", ["--stands", "1"]),
     ("Virtual scanner", "bench_scan_tree", []),
 ]
+COLUMNS = ("program", "quantity", "value", "source", "date")  # of --recorded
 QUICK = ("bench_scaling", "bench_full_resolution", "bench_skeleton", "bench_scan_tree")
 COLORS = ("#1f6fb4", "#d9822b", "#3a8f4d", "#a14c9b", "#b03a3a", "#5f6b76")
 
@@ -108,10 +109,13 @@ def run(title, program, arguments, options):
     start = time.time()
     try:
         done = subprocess.run(
-            [path, *arguments], capture_output=True, text=True, timeout=options.limit, check=False
-        )
+            [path, *arguments], capture_output=True, text=True, errors="replace",
+            timeout=options.limit, check=False,
+        )  # fmt: skip
     except subprocess.TimeoutExpired:
         return {**result, "error": f"stopped after {options.limit:g} s (--limit)"}
+    except OSError as error:
+        return {**result, "error": f"could not be started: {error.strerror}"}
     tables, rest = tables_of(done.stdout)
     result.update(seconds=round(time.time() - start, 1), tables=tables, text=rest)
     if done.returncode != 0:
@@ -173,12 +177,18 @@ def log_plot(series, x_label, y_label):
 def scaling_plot(table):
     """Returns the plot of the table of bench_scaling, with the time of the queries as a line."""
     series = {}
-    for name, points, seconds, query, _ in table[1:]:
-        series.setdefault(name, []).append((float(points), float(seconds)))
+    for row in table[1:]:
+        try:
+            name, (points, seconds, query) = row[0], map(float, row[1:4])
+        except ValueError:
+            continue  # a value is missing
+        if not all(0 < x < math.inf for x in (points, seconds, query)):
+            continue
+        series.setdefault(name, []).append((points, seconds))
         label = "query of 6 neighbours" if "deformation" in name else "query of 25 neighbours"
         line = series.setdefault(label, [])
-        if all(x != float(points) for x, _ in line):
-            line.append((float(points), float(query)))
+        if all(x != points for x, _ in line):
+            line.append((points, query))
     return log_plot({k: sorted(v) for k, v in series.items()}, "points", "seconds")
 
 
@@ -211,9 +221,8 @@ def page(report):
     if report["recorded"]:
         parts.append("<h2>Recorded figures of other programs</h2>")
         parts.append("<p>These figures were not measured in this run.</p>")
-        columns = ["program", "quantity", "value", "source", "date"]
-        rows = [[row.get(c, "") for c in columns] for row in report["recorded"]]
-        parts.append(html_table([columns] + rows))
+        rows = [[row[c] or "" for c in COLUMNS] for row in report["recorded"]]
+        parts.append(html_table([list(COLUMNS)] + rows))
     parts.append("</body></html>")
     return "".join(parts)
 
@@ -228,11 +237,20 @@ def main():
     parser.add_argument("--quick", action="store_true", help="only a few programs")
     parser.add_argument("--recorded", help="figures of other programs (CSV)")
     options = parser.parse_args()
+    if not os.path.isdir(options.programs):
+        parser.error(f"--programs {options.programs} is no folder; ./run bench builds the programs")
+    if not options.limit > 0:
+        parser.error("--limit must be more than 0")
     recorded = []
-    if options.recorded:
-        with open(options.recorded, encoding="utf-8", newline="") as file:
-            recorded = list(csv.DictReader(file))
-    os.makedirs(options.output, exist_ok=True)
+    try:
+        if options.recorded:
+            with open(options.recorded, encoding="utf-8", newline="") as file:
+                recorded = list(csv.DictReader(file))
+        os.makedirs(options.output, exist_ok=True)
+    except (OSError, UnicodeDecodeError) as error:
+        parser.error(str(error))
+    if recorded and not set(COLUMNS) <= set(recorded[0]):
+        parser.error(f"--recorded needs the columns {', '.join(COLUMNS)}")
     report = {"environment": environment(options.programs), "results": [], "recorded": recorded}
     for title, program, arguments in RUNS:
         if options.quick and program not in QUICK:

@@ -99,6 +99,12 @@ def shear(node, height):
 def make(arguments):
     """One tree at a time is scanned with the ground around it; trees do not hide each other."""
     scans, one = os.path.join(arguments.folder, "scans"), os.path.join(arguments.folder, "one")
+    if arguments.side < 1 or not arguments.step_degrees > 0:
+        sys.exit("plot_workflow.py: --side and --step-degrees must be more than 0")
+    if not os.path.exists(os.path.join(arguments.programs or "", "virtual_scan")):
+        sys.exit("plot_workflow.py: --programs has no virtual_scan; build the programs first")
+    if os.path.exists(scans):
+        sys.exit(f"plot_workflow.py: {scans} exists; choose another --folder, or remove it")
     os.makedirs(scans)
     side, trees, total = arguments.side, [], 0
     shift = random.Random(7)

@@ -32,9 +32,11 @@ using Point = CGAL::Simple_cartesian<double>::Point_3;
 /// Returns the contents of a text file.
 inline std::string text_of_file(const std::string& path)
 {
+  if (std::filesystem::is_directory(path))
+    throw pcs::IO_error(path, "is a folder, expected a file");
   std::ifstream in(path, std::ios::binary);
   std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  if (!in || std::filesystem::is_directory(path))
+  if (!in)
     throw pcs::IO_error(path, "cannot be read");
   return text;
 }

@@ -256,17 +256,25 @@ inline void add_family(const Options& o, Page& page)
     }
   const std::vector<Json> frames = page.add_points(points);
   const auto middle = frames.begin() + static_cast<std::ptrdiff_t>(grid.size());
-  const Json modes = read_json(o.family + "/modes.json");
+  const std::string modes_path = o.family + "/modes.json";
+  const Json modes = read_json(modes_path);
   Json shares = Json::array();
-  for (const Json& mode : modes.value("modes", Json::array()))
-    shares.push_back(mode.value("share_of_variance", 0.0));
+  std::size_t number_of_trees = 0;
+  try {
+    for (const Json& mode : modes.value("modes", Json::array()))
+      shares.push_back(mode.value("share_of_variance", 0.0));
+    number_of_trees = modes.value("outlier_scores", Json::array()).size();
+  } catch (const nlohmann::json::exception& e) {
+    throw pcs::IO_error(modes_path,
+                        std::string("is no report of orl_geodesic --modes: ") + e.what());
+  }
   page.views.push_back({{"id", "family"},
                         {"up", "z"},
                         {"nodes_of_branch", nodes_of_branch},
                         {"order", page.add_numbers(first.order)},
                         {"side", side},
                         {"shares", shares},
-                        {"trees", modes.value("outlier_scores", Json::array()).size()},
+                        {"trees", number_of_trees},
                         {"radius", page.add_lengths(radii)},
                         {"grid", std::vector<Json>(frames.begin(), middle)},
                         {"samples", std::vector<Json>(middle, frames.end())}});

@@ -4,14 +4,18 @@
 
 #include "Page.h"
 #include "add_views.h"
+#include "common/Distinct_files.h"
 #include "common/Report_file.h"
 #include "common/run_program.h"
+#include <pcs/core/errors.h>
 
 #include <CLI/CLI.hpp>
 
 #include <cstddef>
+#include <filesystem>
 #include <iostream>
 #include <string>
+#include <system_error>
 
 namespace {
 
@@ -55,8 +59,34 @@ Exit codes: 0 success, 1 bad input or usage, 2 internal error.)");
       ->capture_default_str();
 }
 
+/// Refuses a page that would replace an input, also a file in a folder of inputs.
+void check_files(const gallery::Options& o)
+{
+  namespace fs = std::filesystem;
+  program::Distinct_files files;
+  for (const std::string& input : {o.editor,
+                                   o.rest,
+                                   o.deformed,
+                                   o.edit,
+                                   o.scan,
+                                   o.cylinders,
+                                   o.mesh,
+                                   o.scan_report,
+                                   o.stand,
+                                   o.stand_report})
+    files.add_input(input);
+  for (const std::string& folder : {o.page, o.morph, o.family}) {
+    std::error_code none; // a missing folder has no files
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, none))
+      if (folder == o.page || entry.path().extension() != ".html")
+        files.add_input(entry.path().string());
+  }
+  files.add_output(o.output);
+}
+
 bool work(const gallery::Options& o)
 {
+  check_files(o);
   program::Report_file file(o.output);
   gallery::Page page;
   if (!o.scan.empty())
@@ -69,8 +99,13 @@ bool work(const gallery::Options& o)
     gallery::add_stand(o, page);
   if (!o.rest.empty())
     gallery::add_deformation(o, page);
-  const std::string html =
-      page.html(o.page, o.editor.empty() ? std::string() : gallery::text_of_file(o.editor));
+  if (page.views.empty())
+    throw pcs::Invalid_input("the page would be empty; name the files of at least one view, for "
+                             "example --rest and --deformed");
+  const std::string editor = o.editor.empty() ? std::string() : gallery::text_of_file(o.editor);
+  if (!o.editor.empty() && editor.empty())
+    throw pcs::IO_error(o.editor, "the file is empty");
+  const std::string html = page.html(o.page, editor);
   file.commit(html);
   std::cerr << page.views.size() << " views, " << static_cast<double>(html.size() / 100000) / 10
             << " MB, " << (o.editor.empty() ? "without" : "with")

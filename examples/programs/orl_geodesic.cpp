@@ -111,6 +111,11 @@ build(Space& space, const Options& o, const std::optional<pcs::Orl_correspondenc
           .alignment(may_turn ? pcs::Orl_alignment::rotate_about_up : pcs::Orl_alignment::as_given)
           .up_direction(program::up_direction<Kernel>(o.up))
           .callback(callback));
+  line.clear();
+  if (report.number_of_failed_windows > 0 && !o.is_quiet)
+    std::cerr << "orl_geodesic: warning: the transport of points did not converge in "
+              << report.number_of_failed_windows << " of " << report.number_of_windows
+              << " windows; use a larger --sinkhorn-epsilon, or --transport exact\n";
   if (!o.correspondences.empty()) {
     pcs::Orl_correspondences found = space.correspondences();
     found.note = method(o);

@@ -283,7 +283,7 @@ public:
       if (session().report().status == Status::converged)
         internal::write_or_clear(tree, [&] {
           if constexpr (is_ready_made)
-            skeleton::fill_ready_made(session().tree(), session().scan().frame, tree);
+            skeleton::write_ready_made(session().tree(), session().scan().frame, tree);
           else
             skeleton::write_graph(session().tree(), session().scan().frame, m_np, tree);
         });

@@ -93,6 +93,11 @@ BOOST_AUTO_TEST_CASE(what_is_wrong_is_named_with_its_line)
   BOOST_CHECK_THROW(pcs::IO::read_txtskl<Kernel>(path("missing"), tree), pcs::IO_error);
 }
 
+BOOST_AUTO_TEST_CASE(a_file_without_layers_is_refused)
+{
+  refuses("0\n", "expected at least 1 layer");
+}
+
 BOOST_AUTO_TEST_CASE(a_file_that_was_cut_is_refused)
 {
   const std::size_t last = good.rfind(' '); // before the last radius

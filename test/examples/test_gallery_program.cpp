@@ -184,6 +184,12 @@ BOOST_AUTO_TEST_CASE(invalid_input_is_refused)
   refuses("--family missing", "missing");
   write("edit.json", "{");
   refuses("--rest in.ply --deformed in.ply --edit edit.json", "not valid JSON");
+  refuses("--rest in.ply --deformed in.ply --edit .", "is a folder");
+  write("empty.js", "");
+  refuses("--rest in.ply --deformed in.ply --editor empty.js", "empty.js: the file is empty");
+  refuses("", "the page would be empty");
+  BOOST_TEST(run("--page . --output in.ply --rest in.ply --deformed in.ply") == 1);
+  BOOST_TEST(err.find("a result would destroy it") != std::string::npos, err);
   BOOST_TEST(run("--page . --output page.html --rest in.ply --deformed in.ply") == 1);
   BOOST_TEST(err.find("index.html") != std::string::npos, err);
 }

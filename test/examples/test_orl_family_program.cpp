@@ -308,6 +308,8 @@ BOOST_AUTO_TEST_CASE(a_saved_space_gives_the_same_trees)
     write("cut.txt", text.substr(0, text.size() * k / 10));
     refuses("--load-space cut.txt --mean --output cut", "cut.txt");
   }
+  write("cut.txt", text.substr(0, text.size() - 2)); // within the last number
+  refuses("--load-space cut.txt --mean --output cut", "the last line has no end");
   BOOST_TEST(!exists("cut/mean.swc"));
 }
 
@@ -336,6 +338,7 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_with_a_sentence)
   refuses(skeletons + "--mean --matches m.csv --output out", "two trees");
   refuses(skeletons + "--load-space s.txt --mean --output out", "only one of them");
   refuses("--load-space missing.txt --mean --output out", "missing.txt");
+  refuses("--load-space s.txt --output out", "expected one of --lambda");
   refuses(skeletons + "--skeleton missing.swc --mean --output out", "missing.swc");
   write("file", "");
   refuses(skeletons + "--mean --output file", "file");

@@ -150,7 +150,9 @@ pcs::Deformation_report run_session(const Edited_points& cloud,
     stage = "deforming";
     const pcs::Deformation_report report = session.deform();
     if (report.status == pcs::Status::numerical_failure)
-      throw std::runtime_error("a matrix could not be factorised; nothing was written");
+      throw pcs::Invalid_input("a matrix could not be factorised, probably because parts of the "
+                               "cloud are too far apart for their size; remove points far away "
+                               "from all others, or use more --neighbors");
     use(session);
     return report;
   };

@@ -56,11 +56,10 @@ struct Options
   bool is_family() const
   {
     return do_mean || do_growth || number_of_modes > 0 || number_of_samples > 0 ||
-           !weights.empty() || !save.empty() || !load.empty() || !changes.empty() ||
-           !distances.empty();
+           !weights.empty() || !save.empty() || !changes.empty() || !distances.empty();
   }
   /// Whether trees are made at the positions of `lambda`.
-  bool has_places() const { return is_given("--lambda") || !is_family(); }
+  bool has_places() const { return is_given("--lambda") || (!is_family() && load.empty()); }
 };
 
 /// Appends numbers separated by commas. CLI11 would read an empty string as 0, and omit empty
@@ -385,6 +384,9 @@ inline void check(const Options& o)
     check_numbers(o, n);
   } else if (!o.correspondences.empty() || !o.matches.empty())
     fail("--correspondences and --matches need the trees, not --load-space");
+  else if (!o.is_family() && !o.is_given("--lambda"))
+    fail("with --load-space, expected one of --lambda, --mean, --modes, --sample, --weights, "
+         "--growth, --changes, --distances or --save-space");
   for (const double l : o.lambda)
     if (!std::isfinite(l) || std::abs(l) > 1000)
       fail("--lambda must be finite numbers between -1000 and 1000");

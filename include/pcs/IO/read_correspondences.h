@@ -42,7 +42,7 @@ inline Orl_correspondences read_correspondences(const std::string& path)
   }
   file.expect("turn");
   for (double& x : result.rotation)
-    x = file.real("a quaternion");
+    x = file.real("number of a quaternion");
   const auto index = [&] {
     return file.skip("-") ? Orl_correspondences::none : file.count("the number of an element");
   };
@@ -70,8 +70,7 @@ inline Orl_correspondences read_correspondences(const std::string& path)
       i = file.skip("-") ? Orl_correspondences::no_point
                          : file.number<std::uint32_t>("the number of a point");
   }
-  if (!file.is_at_end())
-    file.fail("expected the end of the file");
+  file.expect_end();
   return result;
 }
 

@@ -33,8 +33,7 @@ public:
     read_pairs(s.pairs);
     read_points(s);
     read_partners(s);
-    if (!m_file.is_at_end())
-      m_file.fail("expected the end of the file");
+    m_file.expect_end();
     return s;
   }
 

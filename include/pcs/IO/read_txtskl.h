@@ -30,6 +30,8 @@ public:
   Tree_skeleton<Kernel> operator()()
   {
     const std::size_t number_of_layers = m_file.count("the number of layers");
+    if (number_of_layers == 0)
+      m_file.fail("expected at least 1 layer, found 0");
     for (std::size_t l = 0; l < number_of_layers; ++l)
       read_layer(l);
     if (!m_file.is_at_end())

@@ -155,8 +155,11 @@ public:
     line = without_carriage_return(std::string_view(m_buffer.data() + m_begin, m_end - m_begin));
     m_begin = m_end;
     ++m_line_number;
+    m_is_last_line_open = true;
     return true;
   }
+  //! whether the last line that `read_line()` returned ended with the file, without a line break
+  bool is_last_line_open() const { return m_is_last_line_open; }
 
   [[noreturn]] void fail_at_line(const std::string& what) const
   {
@@ -256,6 +259,7 @@ private:
   std::uint64_t m_buffer_position = 0; // of the first byte of the buffer in the file
   std::size_t m_begin = 0, m_end = 0;  // unread part of the buffer
   std::uint64_t m_line_number = 0;
+  bool m_is_last_line_open = false;
 };
 
 } // namespace internal

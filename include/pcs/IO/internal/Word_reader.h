@@ -76,6 +76,15 @@ public:
   }
 
   bool is_at_end() { return next().empty(); }
+  /// Fails if there are further words, or if the last line has no end: it may have been cut within a
+  /// number.
+  void expect_end()
+  {
+    if (!is_at_end())
+      fail("expected the end of the file");
+    if (m_file.is_last_line_open())
+      fail("the last line has no end, so the file is probably not complete; write it again");
+  }
   [[noreturn]] void fail(const std::string& what) const { m_file.fail_at_line(what); }
 
 private:

@@ -24,7 +24,7 @@ namespace skeleton {
 
 /// Fills a `Tree_skeleton` with all attributes of nodes and branches.
 template <class Graph>
-void fill_ready_made(const Branch_tree& found, const Scan_frame& frame, Graph& tree)
+void write_ready_made(const Branch_tree& found, const Scan_frame& frame, Graph& tree)
 {
   using Node = typename Graph::vertex_bundled;
   using FT = typename Node::FT;
