@@ -76,7 +76,7 @@ public:
   }
 
   bool is_at_end() { return next().empty(); }
-  /// Fails if there are further words, or if the last line has no end: it may have been cut within a
+  /// Fails if there are further words, or if the last line has no end: it may have been cut in a
   /// number.
   void expect_end()
   {
