@@ -504,7 +504,8 @@ public:
         \nptype `bool`
         \npdefault `false`
     \npend
-    \throws pcs::Invalid_input as above; the graph is unchanged
+    \throws pcs::Invalid_input as above; the graph is unchanged. It is empty if memory runs out while
+        it is written
   */
   template <class Graph, class NamedParameters = parameters::Default_named_parameters>
   std::enable_if_t<!pcs::internal::is_tree_skeleton_v<Graph>>
@@ -519,7 +520,7 @@ public:
       skeleton(t,
                tree,
                parameters::do_keep_absent_branches(shape_space::read_do_keep_absent_branches(np)));
-      shape_space::write_graph(tree, np, result);
+      pcs::internal::write_or_clear(result, [&] { shape_space::write_graph(tree, np, result); });
     }
   }
 
