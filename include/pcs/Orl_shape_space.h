@@ -504,8 +504,8 @@ public:
         \nptype `bool`
         \npdefault `false`
     \npend
-    \throws pcs::Invalid_input as above; the graph is unchanged. It is empty if memory runs out while
-        it is written
+    \throws pcs::Invalid_input as above; the graph is unchanged. It is empty if memory runs out
+        while it is written
   */
   template <class Graph, class NamedParameters = parameters::Default_named_parameters>
   std::enable_if_t<!pcs::internal::is_tree_skeleton_v<Graph>>
