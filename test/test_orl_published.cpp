@@ -4,6 +4,7 @@
 
 #include <pcs/Orl_shape_space.h>
 #include <pcs/compare_trees.h>
+#include <pcs/orl_geodesic.h>
 #include <support/exceptions.h>
 #include <support/orl_trees.h>
 
@@ -348,6 +349,29 @@ BOOST_AUTO_TEST_CASE(a_smaller_epsilon_comes_nearer_to_the_exact_pairs)
   BOOST_TEST_MESSAGE("pairs in common: epsilon 1 " << coarse << ", 0.01 " << fine);
   BOOST_TEST(fine > 0.9);
   BOOST_TEST(fine > coarse + 0.1);
+}
+
+BOOST_AUTO_TEST_CASE(the_status_tells_that_transports_did_not_converge)
+{
+  const Tree tree = random_tree(9, 2, 2);
+  Space space;
+  space.add(tree, tube_points(tree, 600, 1));
+  space.add(tree, tube_points(tree, 700, 2));
+  Transport_options transport;
+  pcs::Orl_report report = space.build(np::transport_options(transport));
+  BOOST_TEST(report.number_of_failed_windows == 0u);
+  BOOST_TEST((report.status == pcs::Status::converged));
+  transport.method = pcs::Point_transport::sinkhorn;
+  transport.sinkhorn.iterations = 1;
+  report = space.build(np::transport_options(transport));
+  BOOST_TEST(report.number_of_failed_windows > 0u);
+  BOOST_TEST((report.status == pcs::Status::iteration_limit));
+  Tree middle; // the result is written
+  std::vector<Point> points;
+  const std::vector<Point> one = tube_points(tree, 600, 1), two = tube_points(tree, 700, 2);
+  pcs::orl_geodesic(tree, one, tree, two, 0.5, middle, points, np::transport_options(transport));
+  BOOST_TEST(num_vertices(middle) > 0u);
+  BOOST_TEST(points.size() >= 700u);
 }
 
 BOOST_AUTO_TEST_CASE(normals_are_orthogonal_to_branches_where_scans_have_none)

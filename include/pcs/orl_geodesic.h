@@ -34,8 +34,7 @@ namespace pcs {
   \param np named parameters of `build()`, `geodesic()` and `points()`; for a graph of Boost, also
       of `skeleton()`
   \param np_a, np_b named parameters of `add()` for the trees
-  \return the report of `build()`; unless its status is `Status::converged`, the outputs are
-      unchanged
+  \return the report of `build()`; if its status is `Status::cancelled`, the outputs are unchanged
 */
 template <class ConcurrencyTag = CGAL::Parallel_if_available_tag,
           class TreeGraphA,
@@ -70,7 +69,7 @@ Orl_report orl_geodesic(const TreeGraphA& tree_a,
     const auto a = space.add(tree_a, scan_a, np_a);
     const auto b = space.add(tree_b, scan_b, np_b);
     report = space.build(np);
-    if (report.status != Status::converged)
+    if (report.status == Status::cancelled)
       return report;
     const Orl_tree tree = space.geodesic(a, b, lambda, np);
     space.points(tree, out_points, np);

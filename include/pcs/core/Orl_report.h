@@ -17,6 +17,7 @@ namespace pcs {
 //! statistics of `orl_geodesic()` or `Orl_shape_space::build()`
 struct Orl_report
 {
+  //! `iteration_limit`: some transports of points did not converge, see `number_of_failed_windows`
   Status status = Status::nothing_to_do;
 
   std::size_t number_of_trees = 2; ///< [count]; values of single trees refer to the first two

@@ -191,8 +191,10 @@ build_space(const Build_options& options, pcs::internal::Progress& progress, Spa
   const bool is_done = state.inputs.size() == 2
                            ? internal::build_two<ConcurrencyTag>(state.inputs, run, built)
                            : internal::build_many<ConcurrencyTag>(state.inputs, run, built);
-  report.status = is_done ? Status::converged : Status::cancelled;
+  report.status = Status::cancelled;
   if (is_done) {
+    report.status =
+        report.number_of_failed_windows == 0 ? Status::converged : Status::iteration_limit;
     internal::replace(state, std::move(built));
     progress.finish();
   }
