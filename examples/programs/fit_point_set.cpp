@@ -11,6 +11,7 @@
 #include "deformation/Normals.h"
 #include "deformation/adapt_faces.h"
 #include "fitting/read_landmarks.h"
+#include <pcs/IO/internal/file_format.h>
 #include <pcs/IO/points/Mesh_faces.h>
 #include <pcs/IO/points/Point_schema.h>
 #include <pcs/IO/points/Point_table.h>
@@ -81,7 +82,9 @@ void declare(CLI::App& app, Options& options)
   app.add_option("--output", options.output, "the deformed source")->required();
   app.add_option("--landmarks", options.landmarks, "known pairs of points, see below");
   app.add_option("--filled", options.filled, "the deformed source points in holes of the target");
-  app.add_option("--report", options.report, "counts, residuals and seconds (JSON)");
+  app.add_option("--report",
+                 options.report,
+                 "counts, residuals and seconds (JSON); -: standard output");
   app.add_option("--samples", options.number_of_samples, "samples that carry the points")
       ->capture_default_str();
   app.add_option("--iterations", options.number_of_iterations, "largest number in each stage")
@@ -279,6 +282,16 @@ std::string plausibility_warning(const pcs::Fit_report& r, bool has_landmarks)
   return text.str();
 }
 
+/// Writes the points in holes. If there are none, glTF cannot hold the file.
+void write_filled(const Options& options, const pcs::IO::Point_table& filled)
+{
+  if (filled.number_of_points() == 0 &&
+      pcs::IO::internal::format_by_extension(options.filled) == pcs::IO::File_format::glb)
+    warn(options.filled, {"is not written: the target has no holes, and glTF needs points"});
+  else
+    pcs::IO::write_points(options.filled, filled);
+}
+
 void run(const Options& options)
 {
   Distinct_files files;
@@ -314,7 +327,7 @@ void run(const Options& options)
   write_options.faces = faces;
   pcs::IO::write_points(options.output, source, write_options);
   if (!options.filled.empty())
-    pcs::IO::write_points(options.filled, unmatched(source, matches));
+    write_filled(options, unmatched(source, matches));
   if (report_file)
     report_file->commit(to_json(report, options));
   if (!options.is_quiet)

@@ -103,7 +103,9 @@ void declare(CLI::App& app, Options& options)
   app.add_option("--crown-base",
                  options.crown_base,
                  "height above the foot where crowns begin; default: breast height");
-  app.add_option("--report", options.report, "counts, missing tiles, unmatched trees (JSON)");
+  app.add_option("--report",
+                 options.report,
+                 "counts, missing tiles, unmatched trees (JSON); -: standard output");
   app.add_option("--tolerance",
                  options.tolerance,
                  "largest distance of feet of one tree; default: a quarter of the breast height");

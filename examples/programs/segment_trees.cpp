@@ -79,7 +79,9 @@ void declare(CLI::App& app, Options& options)
   app.add_option("--tile-results",
                  options.tile_results,
                  "folder for the results of a tile, which merge_tiles reads");
-  app.add_option("--report", options.report, "trees, counts and seconds (JSON)");
+  app.add_option("--report",
+                 options.report,
+                 "trees, counts and seconds (JSON); -: standard output");
   app.add_option("--min-points", options.min_points, "trees with fewer points get no file")
       ->capture_default_str();
   app.add_option("--up",

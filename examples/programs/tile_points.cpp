@@ -99,7 +99,9 @@ void declare(CLI::App& app, Options& options)
   app.set_version_flag("--version", PCS_PROGRAM_VERSION);
   app.add_option("--input", options.inputs, "one or more scans of one plot")->required();
   app.add_option("--folder", options.folder, "folder for the tiles and tiles.json")->required();
-  app.add_option("--report", options.report, "the manifest with seconds of each stage (JSON)");
+  app.add_option("--report",
+                 options.report,
+                 "the manifest with seconds of each stage (JSON); -: standard output");
   app.add_option("--tile-points", options.tile_points, "most points in the core of a tile")
       ->check(CLI::Range(std::int64_t(1), std::int64_t(1) << 40))
       ->capture_default_str();
@@ -183,7 +185,7 @@ Count_grid make_grid(const Options& options)
 }
 
 /// Counts the points of all files. Returns whether none was left out.
-bool count(Point_files& files, std::size_t axis_up, Survey& result)
+bool count(Point_files& files, const Options& options, std::size_t axis_up, Survey& result)
 {
   bool is_first = true;
   return files.count([&](const pcs::IO::Point_table& chunk, std::uint64_t first, const auto& file) {
@@ -194,7 +196,8 @@ bool count(Point_files& files, std::size_t axis_up, Survey& result)
           throw pcs::IO_error(file.path,
                               "point " + std::to_string(first + i) +
                                   " of all inputs: " + char('x' + axis) +
-                                  " exceeds 1e15 cells; remove the point, or raise --cell");
+                                  " exceeds 1e15 cells; remove the point, or raise " +
+                                  (options.voxel ? "--voxel" : "--cell"));
       const double height = p[static_cast<int>(axis_up)];
       result.lowest = is_first ? height : std::min(result.lowest, height);
       result.highest = is_first ? height : std::max(result.highest, height);
@@ -207,7 +210,7 @@ bool count(Point_files& files, std::size_t axis_up, Survey& result)
 Survey survey(Point_files& files, const Options& options, std::size_t axis_up)
 {
   Survey result{make_grid(options), {}};
-  while (!count(files, axis_up, result))
+  while (!count(files, options, axis_up, result))
     result = {make_grid(options), {}};
   if (files.number_of_points() == 0)
     throw pcs::Invalid_input("the inputs have no points");

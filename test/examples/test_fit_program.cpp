@@ -91,6 +91,27 @@ BOOST_AUTO_TEST_CASE(points_move_properties_stay_and_holes_are_filled)
   BOOST_TEST(report["matched_points"] == number_of_pillar_points - filled.number_of_points());
 }
 
+BOOST_AUTO_TEST_CASE(the_report_can_be_written_to_standard_output)
+{
+  Fit_run program;
+  BOOST_TEST_REQUIRE(program.run(files + "--report -") == 0, program.err);
+  BOOST_TEST(Json::parse(program.out)["program"] == "fit_point_set"); // and nothing else
+  BOOST_TEST(program.err.find("converged") != std::string::npos);     // the summary
+  BOOST_TEST(!program.exists("-"));
+}
+
+BOOST_AUTO_TEST_CASE(a_target_without_holes_fills_nothing)
+{
+  Fit_run program;
+  const std::string same = "--source target.ply --target target.ply --output out.ply --filled ";
+  BOOST_TEST_REQUIRE(program.run(same + "filled.glb") == 0, program.err);
+  BOOST_TEST(program.err.find("filled.glb: is not written") != std::string::npos, program.err);
+  BOOST_TEST(program.exists("out.ply"));
+  BOOST_TEST(!program.exists("filled.glb"));
+  BOOST_TEST_REQUIRE(program.run(same + "filled.ply") == 0, program.err);
+  BOOST_TEST(pcs::IO::read_points(program.path("filled.ply")).number_of_points() == 0u);
+}
+
 BOOST_AUTO_TEST_CASE(landmarks_are_read_from_json_and_from_a_table)
 {
   Fit_run program;

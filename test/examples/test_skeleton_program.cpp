@@ -456,7 +456,7 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_and_touches_no_file)
   refuses("--input tree.xyz --swc old.swc --mesh m.ply --tolerance inf", "--tolerance");
   refuses("--input tree.xyz --swc old.swc --root 1 2", "--root");
   refuses("--input tree.xyz --swc old.swc --root 900 0 0", "away from the points");
-  refuses("--input tree.xyz --swc old.swc --root nan 0 0", "root_position");
+  refuses("--input tree.xyz --swc old.swc --root nan 0 0", "--root must be a number");
   refuses("--input tree.xyz --swc old.swc --scanner 1 2 3 4", "three coordinates");
   refuses("--input tree.xyz --swc old.swc --wood bark", "no property 'bark'");
   refuses("--input tree.xyz --swc old.swc --stations place", "no property 'place'");

@@ -586,7 +586,9 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused)
   refuses("--input missing.ply --folder tiles", "missing.ply");
   refuses("--input in.ply missing.ply --folder tiles", "missing.ply");
   refuses("--input empty.ply --folder tiles", "no points");
-  refuses("--input far.xyz --folder tiles", "point 1");
+  refuses("--input far.xyz --folder tiles", "remove the point, or raise --cell");
+  refuses("--input far.xyz --folder tiles --voxel 0.1", "point 1 of all inputs: x exceeds");
+  refuses("--input far.xyz --folder tiles --voxel 0.1", "raise --voxel");
   refuses("--input in.ply damaged.xyz --folder tiles", "damaged.xyz");
   refuses("--input in.ply cut.ply --folder tiles", "cut.ply");
   refuses("--input in.ply --folder file", "directory");

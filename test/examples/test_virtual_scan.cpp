@@ -155,7 +155,7 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_and_touches_no_file)
   refuses(*this, "--output scan.ply --height 0", "--height must be positive");
   refuses(*this, "--output scan.ply --seed 99999999999999999999", "at most 64 bits");
   refuses(*this, "--output scan.ply --seed 1.5", "at most 64 bits");
-  refuses(*this, "--output scan.ply --noise nan", "range_noise");
+  refuses(*this, "--output scan.ply --noise nan", "--noise must be a number");
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
 // A text file that is checked to be writable before the work, and that appears only when it is
-// complete.
+// complete; or standard output.
 
 #ifndef PCS_EXAMPLES_PROGRAMS_COMMON_REPORT_FILE_H
 #define PCS_EXAMPLES_PROGRAMS_COMMON_REPORT_FILE_H
@@ -15,18 +15,27 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
+#include <ostream>
+#include <streambuf>
 #include <string>
 #include <system_error>
 #include <unistd.h>
 
 namespace program {
 
+/// The path `-` is standard output: what the program prints goes to standard error instead, so that
+/// standard output holds the report alone.
 class Report_file
 {
 public:
   explicit Report_file(const std::string& path) : m_path(path), m_target(path)
   {
     namespace fs = std::filesystem;
+    if (path == "-") {
+      m_standard_output = std::cout.rdbuf(std::cerr.rdbuf());
+      return;
+    }
     pcs::IO::internal::refuse_gz(path);
     std::error_code error;
     const fs::file_status status = fs::status(path, error);
@@ -51,7 +60,12 @@ public:
   Report_file(const Report_file&) = delete;
   Report_file& operator=(const Report_file&) = delete;
 
-  ~Report_file() { remove_temporary(); }
+  ~Report_file()
+  {
+    remove_temporary();
+    if (m_standard_output != nullptr)
+      std::cout.rdbuf(m_standard_output);
+  }
 
   /// Writes the report. Invalid UTF-8 in file names is replaced.
   void commit(const nlohmann::ordered_json& json)
@@ -61,6 +75,12 @@ public:
 
   void commit(const std::string& text)
   {
+    if (m_standard_output != nullptr) {
+      std::ostream out(m_standard_output);
+      if (!(out << text << std::flush))
+        throw pcs::IO_error("standard output", "the report cannot be written");
+      return;
+    }
     if (!m_temporary.empty())
       m_out.open(m_temporary);
     m_out << text;
@@ -88,6 +108,7 @@ private:
   std::filesystem::path m_target;
   std::filesystem::path m_temporary; // empty if there is none
   std::ofstream m_out;
+  std::streambuf* m_standard_output = nullptr; // of std::cout, if the report is written there
 };
 
 } // namespace program

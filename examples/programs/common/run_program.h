@@ -11,6 +11,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <cmath>
 #include <csignal>
 #include <exception>
 #include <iostream>
@@ -19,6 +20,21 @@
 #include <type_traits>
 
 namespace program {
+
+/// Rejects values that no option accepts: empty ones, for example of an undefined variable of a
+/// script, and NaN, which the comparisons of `CLI::Range` accept.
+inline void check_values(const CLI::App& app)
+{
+  for (const CLI::Option* const option : app.get_options())
+    for (const std::string& value : option->results()) {
+      if (value.empty())
+        throw pcs::Invalid_input(option->get_name() + " has an empty value");
+      double number = 0;
+      if (option->get_type_name().rfind("FLOAT", 0) == 0 &&
+          CLI::detail::lexical_cast(value, number) && std::isnan(number))
+        throw pcs::Invalid_input(option->get_name() + " must be a number, found " + value);
+    }
+}
 
 /// Parses the options, then calls `work()`, which returns whether it succeeded, or an exit code.
 /// Without arguments, prints what the program does, and a call with the arguments `example`.
@@ -43,10 +59,7 @@ int run_program(CLI::App& app, int argc, char** argv, const std::string& example
   pcs::keep_memory();
   try {
     app.parse(argc, argv);
-    for (const CLI::Option* option : app.get_options())
-      for (const std::string& value : option->results())
-        if (value.empty()) // for example an undefined variable of a script
-          throw pcs::Invalid_input(option->get_name() + " has an empty value");
+    check_values(app);
     if constexpr (std::is_same_v<decltype(work()), bool>)
       return work() ? 0 : bad_input;
     else

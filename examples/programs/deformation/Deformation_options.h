@@ -122,7 +122,9 @@ inline void declare(CLI::App& app, Options& options)
   app.add_flag("--points-only",
                options.is_points_only,
                "read the vertices of a mesh only, without faces, lists and other elements");
-  app.add_option("--report", options.report, "write counts, seconds and energies here (JSON)");
+  app.add_option("--report",
+                 options.report,
+                 "write counts, seconds and energies here (JSON); -: standard output");
   app.add_flag("--quiet", options.is_quiet, "print warnings and errors only");
 }
 

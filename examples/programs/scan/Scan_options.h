@@ -71,7 +71,9 @@ inline void declare(CLI::App& app, Scan_options& o)
   app.add_option("--output", o.output, "labelled points (PLY, LAS or text)")->required();
   app.add_option("--truth", o.truth, "write the true tree here (CSV)");
   app.add_option("--swc", o.swc, "write the true tree here (SWC)");
-  app.add_option("--report", o.report, "write counts, totals and seconds here (JSON)");
+  app.add_option("--report",
+                 o.report,
+                 "write counts, totals and seconds here (JSON); -: standard output");
   app.add_flag("--quiet", o.is_quiet, "print errors only");
 
   const char* tree = "The tree";

@@ -156,7 +156,9 @@ inline void declare(CLI::App& app, Skeleton_options& options)
   app.add_option("--points",
                  options.points,
                  "the scan with branch, residual and outward normal of every point");
-  app.add_option("--report", options.report, "counts, sizes and seconds (JSON)");
+  app.add_option("--report",
+                 options.report,
+                 "counts, sizes and seconds (JSON); -: standard output");
   app.add_option("--folder", options.folder, "folder for the results of several scans");
   app.add_option("--also",
                  options.also,
