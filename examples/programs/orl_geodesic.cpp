@@ -218,6 +218,19 @@ Root_number root_number(const Options& o, std::size_t i)
   return {o.root_numbers[i], false};
 }
 
+/// Says why results have no normals although a file has some.
+void warn_of_normals(const Options& o, const std::vector<Tree_file>& files)
+{
+  if (o.is_quiet || o.method.normals == "across")
+    return;
+  for (std::size_t i = 0; i < files.size(); ++i)
+    if (const std::size_t n = files[i].number_of_bad_normals; n > 0)
+      std::cerr << "orl_geodesic: warning: " << o.trees[i] << ": " << n << " of "
+                << files[i].points.number_of_points()
+                << " normals are zero or not finite, so no normals are written; "
+                   "--normals across needs none\n";
+}
+
 /// Reads all files before skeletons are computed, which takes time.
 std::vector<Tree_file> read_trees(const Options& o)
 {
@@ -234,6 +247,7 @@ std::vector<Tree_file> read_trees(const Options& o)
     if (!warning.empty() && !o.is_quiet)
       std::cerr << "orl_geodesic: warning: " << warning << '\n';
   }
+  warn_of_normals(o, files);
   return files;
 }
 
@@ -278,6 +292,7 @@ void run(const Options& o)
   if (!o.load.empty()) {
     space.restore(pcs::IO::read_shape_space(o.load));
     check_numbers(o, space.number_of_trees());
+    check_points(o, space.has_points());
   }
   std::optional<pcs::Orl_correspondences> stored;
   if (was_stored && o.load.empty())

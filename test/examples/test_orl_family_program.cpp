@@ -361,6 +361,7 @@ BOOST_AUTO_TEST_CASE(options_that_would_have_no_effect_are_refused)
     BOOST_TEST(err.find("s.txt") != std::string::npos);
   }
   BOOST_TEST(!exists("again"));
+  refuses("--load-space s.txt --mean --normals across --output again", "s.txt has no points");
   refuses(skeletons + "--mean --extend-axes --output again", "--extend-axes has no effect without");
   refuses(skeletons + "--mean --transport sinkhorn --output again", "--transport has no effect");
   for (const std::string option : {"--max-extrapolation-degrees 30",

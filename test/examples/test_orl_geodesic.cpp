@@ -312,6 +312,32 @@ BOOST_AUTO_TEST_CASE(skeletons_are_extracted_where_none_are_given)
   BOOST_TEST(number_in("three") == 0u);
 }
 
+BOOST_AUTO_TEST_CASE(a_normal_that_is_zero_is_named)
+{
+  const auto write_normals = [&](const std::string& name, std::size_t zero) {
+    const auto points = orl_test::tube_points(swc(name + ".swc"), 2000, 1);
+    std::string text = "ply\nformat ascii 1.0\nelement vertex 2000\n";
+    for (const std::string column : {"x", "y", "z", "nx", "ny", "nz"})
+      text += "property double " + column + '\n';
+    std::ostringstream rows;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      rows << points[i] << " 0 0 " << (i == zero ? 0 : 1) << '\n';
+    write(name + ".ply", text + "end_header\n" + rows.str());
+  };
+  write_normals("a", pcs::npos);
+  write_normals("b", pcs::npos);
+  succeeds(trees + "--lambda 0.5 --output all");
+  BOOST_TEST(content("all/lambda_0.500.ply").find("nx") != std::string::npos);
+  BOOST_TEST(err == "");
+  write_normals("b", 7);
+  succeeds(trees + "--lambda 0.5 --output some");
+  BOOST_TEST(content("some/lambda_0.500.ply").find("nx") == std::string::npos);
+  BOOST_TEST(err.find("b.ply: 1 of 2000 normals are zero") != std::string::npos, err);
+  succeeds(trees + "--lambda 0.5 --normals across --output across");
+  BOOST_TEST(content("across/lambda_0.500.ply").find("nx") != std::string::npos);
+  BOOST_TEST(err == "");
+}
+
 BOOST_AUTO_TEST_CASE(options_change_the_result)
 {
   succeeds(trees + "--lambda 0.5 --output plain");
@@ -540,9 +566,14 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_with_a_sentence)
   refuses(trees + "--transport fast --output out", "transport");
   refuses(trees + "--sinkhorn-epsilon 0.1 --output out", "without --transport sinkhorn");
   refuses(trees + "--metric published --output out", "without --distances");
-  refuses(trees + "--reach nan --output out", "--reach must be more than 0");
+  refuses(trees + "--reach nan --output out", "--reach must be a number, found nan");
+  refuses(trees + "--reach 0 --output out", "--reach: Value 0 not in range");
+  refuses(trees + "--max-extrapolation-degrees nan --output out",
+          "--max-extrapolation-degrees must be a number, found nan");
   refuses(trees + trees + "--mean --point-path virtual-edges --output out", "--point-path");
   refuses("--skeleton a.swc --skeleton b.swc --normals across --output out", "without points");
+  refuses(trees + "--distances d.csv --normals across --output out", "--normals has no effect");
+  refuses(trees + "--distances d.csv --point-path virtual-edges --output out", "--point-path has");
   write("file", "");
   refuses(trees + "--output file", "file");
   refuses(trees + "--output out --report missing/r.json", "missing/r.json");

@@ -58,6 +58,12 @@ struct Options
     return do_mean || do_growth || number_of_modes > 0 || number_of_samples > 0 ||
            !weights.empty() || !save.empty() || !changes.empty() || !distances.empty();
   }
+  /// Whether trees are written, with their points if there are any.
+  bool has_results() const
+  {
+    return has_places() || do_mean || do_growth || number_of_modes > 0 || number_of_samples > 0 ||
+           !weights.empty();
+  }
   /// Whether trees are made at the positions of `lambda`.
   bool has_places() const { return is_given("--lambda") || (!is_family() && load.empty()); }
 };
@@ -215,7 +221,9 @@ Exit codes: 0 success, 1 bad input or usage, 2 internal error.)");
                  o.matches,
                  "write the ids of the tips of matched branches, and the confidence of each match, "
                  "here (CSV)");
-  app.add_option("--report", o.report, "write distances, counts and seconds here (JSON)");
+  app.add_option("--report",
+                 o.report,
+                 "write distances, counts and seconds here (JSON); -: standard output");
   app.add_option("--correspondences",
                  o.correspondences,
                  "read correspondences from this file, or write them if it does not exist");
@@ -314,12 +322,24 @@ inline void check_effects(const Options& o)
   refuse(!o.has_places() && o.number_of_samples == 0,
          {"--limit-radii"},
          "without --lambda or --sample");
+  refuse(!o.has_results(),
+         {"--point-path", "--normals", "--mesh", "--keep-absent-branches"},
+         "without an option that writes trees, such as --lambda or --mean");
   refuse(!o.do_mean, {"--mean-kind"}, "without --mean");
   refuse(o.number_of_modes == 0, {"--mode-inner-product", "--scores"}, "without --modes");
   refuse(o.number_of_samples == 0,
          {"--seed", "--any-range", "--pipe-model"},
          "without --sample: no random trees are drawn");
   refuse(!o.do_growth, {"--times", "--frames", "--monotone"}, "without --growth");
+}
+
+/// Rejects options for the points of the results, if the space that was read has none.
+inline void check_points(const Options& o, bool has_points)
+{
+  for (const char* const name : {"--point-path", "--normals"})
+    if (!has_points && o.is_given(name))
+      throw pcs::Invalid_input(std::string(name) + " has no effect: the space of " + o.load +
+                               " has no points");
 }
 
 /// Checks lists with a number for each tree, and other numbers that are checked after reading.
@@ -390,8 +410,6 @@ inline void check(const Options& o)
   for (const double l : o.lambda)
     if (!std::isfinite(l) || std::abs(l) > 1000)
       fail("--lambda must be finite numbers between -1000 and 1000");
-  if (!(o.method.reach > 0))
-    fail("--reach must be more than 0; inf: all mass is transported");
   std::map<std::string, double> names;
   for (const double l : o.lambda)
     if (const auto [it, is_new] = names.emplace(name_of(l), l); !is_new && it->second != l)

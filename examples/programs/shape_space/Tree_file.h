@@ -38,6 +38,7 @@ struct Tree_file
   pcs::IO::Point_table points;
   std::vector<std::int64_t> ids; ///< ids of the nodes in the file
   bool has_valid_normals = false;
+  std::size_t number_of_bad_normals = 0; ///< zero or not finite
 };
 
 /// Which tree of a skeleton file is read.
@@ -121,12 +122,11 @@ inline Tree_file read_tree(const std::string& points,
     check_place(points, skeleton, tree);
   }
   if (tree.points.has_normals()) {
-    tree.has_valid_normals = true;
     for (const auto& n : tree.points.normals()) {
       const double squared_length = n.squared_length();
-      tree.has_valid_normals =
-          tree.has_valid_normals && squared_length > 0 && std::isfinite(squared_length);
+      tree.number_of_bad_normals += !(squared_length > 0 && std::isfinite(squared_length));
     }
+    tree.has_valid_normals = tree.number_of_bad_normals == 0;
   }
   return tree;
 }
