@@ -6,6 +6,7 @@
 #define PCS_EXAMPLES_GALLERY_ADD_VIEWS_H
 
 #include "Page.h"
+#include "reports.h"
 #include "tables.h"
 #include <pcs/IO/points/Mesh_faces.h>
 #include <pcs/IO/points/Point_table.h>
@@ -36,15 +37,6 @@ struct Options
   std::string page, editor, output;
   std::size_t most_points = 200000, most_model_points = 500000;
 };
-
-inline Json read_json(const std::string& path)
-{
-  try {
-    return Json::parse(text_of_file(path));
-  } catch (const nlohmann::json::exception& e) {
-    throw pcs::IO_error(path, std::string("is not valid JSON: ") + e.what());
-  }
-}
 
 inline pcs::IO::Point_table read_table(const std::string& path)
 {
@@ -83,7 +75,7 @@ inline void add_deformation(const Options& o, Page& page)
                {"rest", frames[0]},
                {"deformed", frames[1]}};
   if (!o.edit.empty())
-    view["edit"] = read_json(o.edit);
+    view["edit"] = read_edit(o.edit);
   page.views.push_back(view);
 }
 
@@ -152,7 +144,7 @@ inline void add_scan(const Options& o, Page& page)
   if (!o.mesh.empty())
     view["mesh"] = mesh_of_page(o.mesh, page);
   if (!o.scan_report.empty())
-    view["report"] = read_json(o.scan_report);
+    view["report"] = read_scan_report(o.scan_report);
   page.views.push_back(view);
 }
 
@@ -257,7 +249,7 @@ inline void add_family(const Options& o, Page& page)
   const std::vector<Json> frames = page.add_points(points);
   const auto middle = frames.begin() + static_cast<std::ptrdiff_t>(grid.size());
   const std::string modes_path = o.family + "/modes.json";
-  const Json modes = read_json(modes_path);
+  const Json modes(program::read_json(modes_path, "the report of orl_geodesic --modes"));
   Json shares = Json::array();
   std::size_t number_of_trees = 0;
   try {
@@ -299,13 +291,14 @@ inline void add_stand(const Options& o, Page& page)
   std::vector<std::size_t> labels;
   for (const std::size_t i : kept)
     labels.push_back(tree[i] < 0 ? none : static_cast<std::size_t>(tree[i]));
-  page.views.push_back({{"id", "stand"},
-                        {"up", "z"},
-                        {"number_in_file", table.number_of_points()},
-                        {"points", page.add_points(select(table.points(), kept))},
-                        {"tree", page.add_indices(labels, none)},
-                        {"number_of_trees", none},
-                        {"report", o.stand_report.empty() ? Json() : read_json(o.stand_report)}});
+  page.views.push_back(
+      {{"id", "stand"},
+       {"up", "z"},
+       {"number_in_file", table.number_of_points()},
+       {"points", page.add_points(select(table.points(), kept))},
+       {"tree", page.add_indices(labels, none)},
+       {"number_of_trees", none},
+       {"report", o.stand_report.empty() ? Json() : read_stand_report(o.stand_report)}});
 }
 
 } // namespace gallery

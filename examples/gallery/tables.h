@@ -64,7 +64,9 @@ inline std::vector<double> numbers_of_line(const std::string& line,
 /// Reads the table of cylinders (CSV) of `extract_tree_skeleton`, with the errors of the radii.
 inline std::vector<Cylinder> read_cylinders(const std::string& path)
 {
-  std::istringstream lines(text_of_file(path));
+  std::string text = text_of_file(path);
+  text.erase(std::remove(text.begin(), text.end(), '\r'), text.end()); // of line ends of Windows
+  std::istringstream lines(text);
   std::string line, name;
   std::getline(lines, line);
   std::vector<std::string> names;

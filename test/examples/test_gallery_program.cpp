@@ -102,7 +102,8 @@ BOOST_AUTO_TEST_CASE(points_in_the_page_are_those_of_the_files)
   for (auto& p : moved.points())
     p = Table::Point_3(p.x() + 2, 2 * p.y(), p.z());
   pcs::IO::write_points(path("moved.ply"), moved);
-  write("edit.json", R"({"handles": [], "note": "</script>"})");
+  write("edit.json",
+        R"({"handles": [{"select": {"property": "</script>", "equals": 1}, "fixed": true}]})");
   write("editor.js", "var an_editor;");
   BOOST_TEST_REQUIRE(run(arguments("--rest in.ply --deformed moved.ply --edit edit.json "
                                    "--model-up y --editor editor.js")) == 0,
@@ -114,7 +115,8 @@ BOOST_AUTO_TEST_CASE(points_in_the_page_are_those_of_the_files)
   const Json views = Json::parse(element(page, "views"));
   BOOST_TEST_REQUIRE(views.size() == 1u);
   BOOST_TEST(views[0]["up"] == "y");
-  BOOST_TEST(views[0]["edit"]["note"] == "</script>"); // did not end the element
+  const Json& select = views[0]["edit"]["handles"][0]["select"];
+  BOOST_TEST(select["property"] == "</script>"); // did not end the element
   BOOST_TEST(difference(page, views[0]["rest"], input) < 200 / 65535.);
   BOOST_TEST(difference(page, views[0]["deformed"], moved) < 200 / 65535.);
 }
@@ -161,6 +163,24 @@ BOOST_AUTO_TEST_CASE(points_have_the_nearest_cylinder_of_their_branch)
   BOOST_TEST(second == 0.02f);
 }
 
+BOOST_AUTO_TEST_CASE(a_tree_below_breast_height_and_line_ends_of_windows_are_accepted)
+{
+  Table scan(std::vector<Table::Point_3>{{0, 0, 0}});
+  scan.add_property("branch", std::vector<std::int32_t>{0});
+  pcs::IO::write_points(path("scan.ply"), scan);
+  std::string table = cylinder_names + "0,0,0,0,0,1,1,0.1,0,1,0,0.01,1\n";
+  for (std::size_t at = 0; (at = table.find('\n', at)) != std::string::npos; at += 2)
+    table.insert(at, "\r");
+  write("c.csv", table);
+  write("r.json",
+        R"({"total": {"branches": 1, "length": 1, "volume": 0.1}, "by_order": [], "height": 1,)"
+        R"( "diameter_at_breast_height": null})");
+  BOOST_TEST_REQUIRE(run(arguments("--scan scan.ply --cylinders c.csv --scan-report r.json")) == 0,
+                     err);
+  const Json view = Json::parse(element(content("page.html"), "views"))[0];
+  BOOST_TEST(view["report"]["height"] == 1);
+}
+
 BOOST_AUTO_TEST_CASE(invalid_input_is_refused)
 {
   refuses("--rest missing.ply --deformed in.ply", "missing.ply");
@@ -179,12 +199,24 @@ BOOST_AUTO_TEST_CASE(invalid_input_is_refused)
   refuses("--scan scan.ply --cylinders c.csv", "line 3: expected a number, found 'x'");
   write("c.csv", cylinder_names + "0,0,0,0,0,1,1,0.1,0,0,0,0.01,1\n");
   refuses("--scan scan.ply --cylinders c.csv", "line 2: expected a branch from 1");
+  write("c.csv", cylinder_names + "0,0,0,0,0,1,1,0.1,0,1,0,0.01,1\n");
+  const std::string report = "--scan scan.ply --cylinders c.csv --scan-report r.json";
+  write("r.json", "[]");
+  refuses(report, "r.json: top level: the key total is missing");
+  write("r.json", R"({"total": {"branches": 1, "length": "2", "volume": 3}})");
+  refuses(report, "r.json: /total/length: expected a number, found \"2\"");
+  scan.add_property("tree", std::vector<std::int32_t>{0});
+  pcs::IO::write_points(path("stand.ply"), scan);
+  write("r.json", R"({"trees": [{"tree": 0, "height": null}]})");
+  refuses("--stand stand.ply --stand-report r.json", "r.json: /trees/0/height: expected a number");
   refuses("--morph .", "lambda_");
   refuses("--family .", "scores_");
   refuses("--family missing", "missing");
   write("edit.json", "{");
   refuses("--rest in.ply --deformed in.ply --edit edit.json", "not valid JSON");
-  refuses("--rest in.ply --deformed in.ply --edit .", "is a folder");
+  refuses("--rest in.ply --deformed in.ply --edit .", "cannot be read");
+  write("edit.json", R"({"handles": [{"select": {"box": [0, 1]}}]})");
+  refuses("--rest in.ply --deformed in.ply --edit edit.json", "/handles/0/select/box/0: expected");
   write("empty.js", "");
   refuses("--rest in.ply --deformed in.ply --editor empty.js", "empty.js: the file is empty");
   refuses("", "the page would be empty");

@@ -6,6 +6,8 @@
 
 const count = (n) => n.toLocaleString('en');
 const metres = (x, digits = 2) => x.toFixed(digits) + ' m';
+/// A diameter is null or 0 if a tree ends below breast height.
+const diameter = (x) => (x ? metres(x, 3) : 'not measured');
 const millimetres = (x) => (1000 * x).toFixed(1) + ' mm';
 const shareOf = (shown, all, what) =>
     shown < all ? `${count(shown)} of ${count(all)} ${what}` : `${count(all)} ${what}`;
@@ -165,7 +167,7 @@ const views = {
       if (report)
         controls.note(
             `Height ${metres(report.height)}, diameter at breast height ` +
-            `${metres(report.diameter_at_breast_height, 3)}, wood ` +
+            `${diameter(report.diameter_at_breast_height)}, wood ` +
             `${(1000 * report.total.volume).toFixed(0)} litres.`);
       controls.note(
           shareOf(positions.length / 3, data.number_in_file, 'points') +
@@ -324,7 +326,7 @@ const views = {
           trees.map(
               (t) => [
                   [`tree ${t.tree + 1}`, colorOfIndex(t.tree)], metres(t.height, 1),
-                  metres(t.diameter_at_breast_height, 3)]));
+                  diameter(t.diameter_at_breast_height)]));
       controls.note(
           'Diameters are those at breast height. ' +
           shareOf(positions.length / 3, data.number_in_file, 'points') + ' are shown.');
@@ -335,7 +337,7 @@ const views = {
           const t = trees[tree[p]];
           return `tree ${tree[p] + 1}` +
               (t ? `\nheight ${metres(t.height, 1)}\ndiameter ` +
-                       `${metres(t.diameter_at_breast_height, 3)}` :
+                       `${diameter(t.diameter_at_breast_height)}` :
                    '');
         },
       };
