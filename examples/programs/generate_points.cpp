@@ -2,17 +2,17 @@
 // SPDX-License-Identifier: BSL-1.0
 // Program: writes a closed bumpy surface as a point file of any size, in chunks.
 
+#include "common/run_program.h"
 #include <pcs/IO/Point_writer.h>
 #include <pcs/IO/points/Point_schema.h>
 #include <pcs/IO/points/Point_table.h>
 #include <pcs/IO/points/Write_options.h>
 
+#include <CLI/CLI.hpp>
+
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <exception>
-#include <iostream>
 #include <string>
 
 using Table = pcs::IO::Point_table;
@@ -29,27 +29,9 @@ Table::Point_3 surface_point(std::uint64_t i, std::uint64_t n)
   return {radius * std::cos(angle), radius * std::sin(angle), 3 * z};
 }
 
-/// Reads a number of points. Throws if it is invalid.
-std::uint64_t read_count(const std::string& text)
+void generate(const std::string& path, std::uint64_t n, bool is_float)
 {
-  std::uint64_t n = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), n);
-  if (error != std::errc() || end != text.data() + text.size() || n == 0 || n > 4294967295U)
-    throw std::invalid_argument("\"" + text +
-                                "\" is not a number of points between 1 and 4294967295");
-  return n;
-}
-
-int main(int argc, char** argv)
-try {
-  const bool is_float = argc == 4 && std::string(argv[3]) == "--float";
-  if (argc != 3 && !is_float) {
-    std::cerr << "usage: generate_points FILE NUMBER_OF_POINTS [--float]\n";
-    return 1;
-  }
-  const std::uint64_t n = read_count(argv[2]);
   constexpr std::uint64_t chunk_size = 262144;
-
   pcs::IO::Point_schema schema;
   if (is_float)
     for (auto& property : schema.properties)
@@ -59,7 +41,7 @@ try {
   options.keep_coordinate_types = true;
   options.las_scale = {1e-7, 1e-7, 1e-7}; // the surface is 6 high
   options.las_offset = {0, 0, 0};
-  pcs::IO::Point_writer writer(argv[1], schema, options);
+  pcs::IO::Point_writer writer(path, schema, options);
   Table chunk(schema);
   for (std::uint64_t first = 0; first < n; first += chunk_size) {
     chunk.clear();
@@ -68,8 +50,24 @@ try {
     writer.append(chunk);
   }
   writer.commit();
-  return 0;
-} catch (const std::exception& e) {
-  std::cerr << "generate_points: " << e.what() << '\n';
-  return 1;
+}
+
+int main(int argc, char** argv)
+{
+  std::string path;
+  std::uint64_t number_of_points = 0;
+  bool is_float = false;
+  CLI::App app("Writes a closed bumpy surface as a point file of any size.", "generate_points");
+  app.footer("The surface is upright, 6 high and 2 wide.\n\n"
+             "Exit codes: 0 success, 1 bad input or usage, 2 internal error.");
+  app.set_version_flag("--version", PCS_PROGRAM_VERSION);
+  app.add_option("file", path, "the points, in any format that can be written")->required();
+  app.add_option("number", number_of_points, "number of points")
+      ->required()
+      ->check(CLI::Range(std::uint64_t(1), std::uint64_t(4294967295U)));
+  app.add_flag("--float", is_float, "coordinates with 32 bits");
+  return program::run_program(app, argc, argv, "points.ply 1000000", [&] {
+    generate(path, number_of_points, is_float);
+    return true;
+  });
 }
