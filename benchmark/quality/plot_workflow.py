@@ -271,7 +271,16 @@ def main():
     arguments = parser.parse_args()
     if arguments.step in ("make", "wrap") and not arguments.programs:
         sys.exit("plot_workflow.py: --programs is required")
-    {"make": make, "wrap": wrap, "evaluate": evaluate, "cut": cut}[arguments.step](arguments)
+    step = {"make": make, "wrap": wrap, "evaluate": evaluate, "cut": cut}[arguments.step]
+    try:
+        step(arguments)
+    except subprocess.CalledProcessError as error:
+        sys.exit(f"plot_workflow.py: {error.cmd[0]} failed with exit code {error.returncode}")
+    except (OSError, StopIteration, KeyError, ValueError, struct.error) as error:
+        sys.exit(
+            f"plot_workflow.py: {arguments.step}: {type(error).__name__} {error}; a file of"
+            f" {arguments.folder} is missing, cut, or not of the step before"
+        )
 
 
 if __name__ == "__main__":
