@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 # Copyright (c) 2026 The pcs authors
 # SPDX-License-Identifier: BSL-1.0
-"""Renders the pictures of README.md by the programs of pcs.
+"""Renders the pictures of README.md and of the stages in the manual by the programs of pcs.
 
+    cmake --build build/release --target write_stages
     doc/fig/render_figures.py --programs build/release/examples/programs --work /tmp/figures \\
-        --dragon build/data/dragon.ply --scan SCAN.ply --other-scan SCAN.ply
+        --dragon build/data/dragon.ply --scan SCAN.ply --other-scan SCAN.ply \\
+        --stages build/release/examples/write_stages
 
 `./run` downloads the dragon. The scans are those of trees without leaves. A picture is left out if
 its input is not given. Needs Python 3 and numpy.
@@ -197,11 +199,15 @@ def sample_triangles(points, triangles, count):
 
 
 def side_by_side(panels, view, up, height, disc, margin=0.03):
-    """Draws every panel, a list of bodies, at the same scale."""
+    """Draws every panel, a list of bodies, at the same scale.
+
+    `disc` is the radius of points [L], or one for each panel.
+    """
+    discs = np.broadcast_to(disc, len(panels))
     bounds = [bounds_of(panel, view, up, margin) for panel in panels]
     low, high = min(b[0][1] for b in bounds), max(b[1][1] for b in bounds)
     images = []
-    for panel, (least, largest) in zip(panels, bounds):
+    for panel, (least, largest), disc in zip(panels, bounds, discs):
         width = int(np.ceil((largest[0] - least[0]) / (high - low) * height))
         frame = (np.array([least[0], low]), np.array([largest[0], high]))
         images.append(draw(panel, view, up, width, height, frame, disc))
@@ -216,6 +222,15 @@ def branch_colors(branch):
     colors[branch == 0] = (120, 84, 58)
     colors[branch < 0] = (205, 205, 205)
     return colors
+
+
+def scale_colors(value):
+    """Returns colours from blue over green to yellow for values from 0 to 1."""
+    stops = np.array([(68, 40, 120), (52, 104, 168), (44, 156, 140), (140, 200, 80), (250, 220, 60)])
+    place = np.clip(value, 0, 1) * (len(stops) - 1)
+    k = np.minimum(place.astype(int), len(stops) - 2)
+    part = (place - k)[:, None]
+    return (1 - part) * stops[k] + part * stops[k + 1]
 
 
 # ---- pictures
@@ -291,6 +306,52 @@ def picture_of_geodesic(options):
     return side_by_side(panels, (0.3, 1, -0.1), (0, 0, 1), 420, 0.0013 * size)
 
 
+def stage(options, name):
+    """Returns the points of a stage and their values."""
+    vertices = read_ply(os.path.join(options.work, name + ".ply"))[0]
+    return points_of(vertices), vertices["value"]
+
+
+def stages_of_deformation(options):
+    """Handles, samples, strained samples, and the points with their rotations."""
+    paint = np.array([GREY, HELD, MOVED], float)
+    panels = []
+    for name in ("handles", "samples"):
+        points, value = stage(options, name)
+        panels.append([(points, paint[value.astype(int)])])
+    points, energy = stage(options, "strained")
+    panels.append([(points, scale_colors(np.sqrt(energy / np.quantile(energy, 0.98))))])
+    points, angle = stage(options, "rotated")
+    panels.append([(points, scale_colors(angle / angle.max()))])
+    unit = np.ptp(points[:, 0]) / 0.2
+    discs = [0.0011 * unit, 0.0024 * unit, 0.0024 * unit, 0.0011 * unit]
+    return side_by_side(panels, (0.15, -0.12, -1), (0, 1, 0), 300, discs)
+
+
+def stages_of_skeleton(options):
+    """The scan, its level sets, the fitted axes, and the branches by their order."""
+    scan = points_of(read_ply(options.scan)[0])
+    panels, size = [[(scan, GREY)]], np.ptp(scan[:, 2])
+    for name in ("level_sets", "axes"):
+        points, value = stage(options, name)
+        panels.append([(points, branch_colors(value.astype(int) + 1))])
+    points, order = stage(options, "branches")
+    paint = np.array([(120, 84, 58), (52, 104, 168), (44, 156, 140), (224, 122, 46), (150, 90, 160)])
+    panels.append([(points, paint[np.minimum(order.astype(int), 4)].astype(float))])
+    discs = np.array([0.0012, 0.0016, 0.0016, 0.0012]) * size
+    return side_by_side(panels, (0.3, 1, -0.1), (0, 0, 1), 460, discs)
+
+
+def stages_of_shape_space(options):
+    """Trees on a geodesic: matched branches in the same colour, the others grey."""
+    panels = []
+    for quarter in range(5):
+        points, branch = stage(options, f"between_{quarter}")
+        panels.append([(points, branch_colors(branch.astype(int)))])
+    size = max(np.ptp(panel[0][0][:, 2]) for panel in panels)
+    return side_by_side(panels, (0.3, 1, -0.1), (0, 0, 1), 380, 0.0014 * size)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--programs", required=True, help="folder of the built programs")
@@ -299,6 +360,7 @@ def main():
     parser.add_argument("--scan", help="scan of a tree without leaves")
     parser.add_argument("--other-scan", help="scan of another tree, for the geodesic")
     parser.add_argument("--output", default=FIGURES, help="folder of the pictures")
+    parser.add_argument("--stages", help="the program write_stages")
     options = parser.parse_args()
     os.makedirs(options.work, exist_ok=True)
     if options.dragon:
@@ -310,6 +372,11 @@ def main():
     if options.scan and options.other_scan:
         picture = picture_of_geodesic(options)
         write_png(os.path.join(options.output, "orl_geodesic.png"), picture)
+    if options.dragon and options.scan and options.stages:
+        subprocess.run([options.stages, options.dragon, options.scan, options.work], check=True)
+        for name in ("deformation", "skeleton", "shape_space"):
+            picture = globals()["stages_of_" + name](options)
+            write_png(os.path.join(options.output, "stages_" + name + ".png"), picture)
 
 
 if __name__ == "__main__":
