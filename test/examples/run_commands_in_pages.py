@@ -28,6 +28,7 @@ PROGRAMS = (
     "fit_point_set",
     "merge_tiles",
     "orl_geodesic",
+    "sample_mesh",
     "segment_trees",
     "tile_points",
     "virtual_scan",
@@ -141,6 +142,8 @@ def make_inputs(programs, folder):
         rows = trees["A"]
         pairs = [{"point": i, "target": [float(c) for c in rows[i]]} for i in (0, 9, 90)]
         json.dump(pairs, file)
+    with open(os.path.join(folder, "TREE.obj"), "w", encoding="ascii") as file:
+        file.write("v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n")
     # what the gallery shows
     subprocess.run(
         [
