@@ -21,6 +21,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <set>
 #include <unistd.h>
@@ -900,6 +901,24 @@ BOOST_AUTO_TEST_CASE(results_do_not_depend_on_the_number_of_threads)
     });
 }
 
+BOOST_AUTO_TEST_CASE(correspondences_of_the_previous_version_have_no_confidence)
+{
+  const std::string path =
+      (std::filesystem::temp_directory_path() / ("pcs_old_" + std::to_string(::getpid()) + ".txt"))
+          .string();
+  const auto read = [&](const std::string& version, const std::string& confidence) {
+    std::ofstream(path) << "pcs_correspondences " << version << "\nnote 0\ntrees 1 2 3 4\n"
+                        << "turn 1 0 0 0\nbranches 1\n- " << confidence
+                        << "0 1 0 0 2 0 1 0 1 0 0 2 0 1\npairs 0\n";
+    return pcs::IO::read_correspondences(path).branches.at(0);
+  };
+  BOOST_TEST(std::isnan(read("3", "").confidence));
+  BOOST_TEST(read("4", "0.25 ").confidence == 0.25);
+  BOOST_TEST(read("4", "0.25 ").nodes[1].back() == 1);
+  BOOST_CHECK_EXCEPTION(read("5", "0.25 "), pcs::IO_error, message_has("expected '3' or '4'"));
+  std::filesystem::remove(path);
+}
+
 BOOST_AUTO_TEST_CASE(correspondences_survive_a_file)
 {
   const Tree a = random_tree(17), b = random_tree(18);
@@ -920,6 +939,15 @@ BOOST_AUTO_TEST_CASE(correspondences_survive_a_file)
   again.add(b, scan_b);
   again.build_from(pcs::IO::read_correspondences(path));
   std::filesystem::remove(path);
+  const auto matches = space.matches(), stored_matches = again.matches();
+  BOOST_TEST_REQUIRE(stored_matches.size() == matches.size());
+  std::size_t number_of_confidences = 0;
+  for (std::size_t m = 0; m < matches.size(); ++m) {
+    BOOST_TEST((stored_matches[m].confidence == matches[m].confidence ||
+                (std::isnan(stored_matches[m].confidence) && std::isnan(matches[m].confidence))));
+    number_of_confidences += std::isfinite(matches[m].confidence) ? 1 : 0;
+  }
+  BOOST_TEST(number_of_confidences > 0u);
   std::vector<Point> one, two;
   space.points(space.geodesic(0, 1, 0.7), one);
   again.points(again.geodesic(0, 1, 0.7), two);
@@ -944,6 +972,9 @@ BOOST_AUTO_TEST_CASE(correspondences_survive_a_file)
                         message_has("other points"));
   auto broken = space.correspondences();
   broken.pairs.back().point[0] = 1000000;
+  BOOST_CHECK_THROW(again.build_from(broken), pcs::Invalid_input);
+  broken = space.correspondences();
+  broken.branches[0].confidence = 1.5;
   BOOST_CHECK_THROW(again.build_from(broken), pcs::Invalid_input);
   broken = space.correspondences();
   broken.branches.back().parent = broken.branches.size();

@@ -338,6 +338,14 @@ BOOST_AUTO_TEST_CASE(a_normal_that_is_zero_is_named)
   BOOST_TEST(err == "");
 }
 
+BOOST_AUTO_TEST_CASE(stored_matches_keep_their_confidence)
+{
+  const std::string stored = trees + "--lambda 0.5 --correspondences c.txt ";
+  succeeds(stored + "--matches one.csv --output one");
+  succeeds(stored + "--matches two.csv --output two");
+  BOOST_TEST(content("one.csv") == content("two.csv"));
+}
+
 BOOST_AUTO_TEST_CASE(options_change_the_result)
 {
   succeeds(trees + "--lambda 0.5 --output plain");

@@ -21,6 +21,8 @@ namespace IO {
 
   `Orl_shape_space::build_from()` checks whether the correspondences match the trees.
 
+  Files of the previous version, 3, have no confidences; these are NaN then.
+
   \param path name of the file
   \throws pcs::IO_error with the line and the expected content
   \par Complexity
@@ -31,7 +33,9 @@ inline Orl_correspondences read_correspondences(const std::string& path)
   internal::Word_reader file(path);
   Orl_correspondences result;
   file.expect("pcs_correspondences");
-  file.expect("3");
+  const bool has_confidences = file.skip("4");
+  if (!has_confidences && !file.skip("3"))
+    file.fail("expected '3' or '4', the versions that can be read");
   file.expect("note");
   for (std::size_t n = file.count("the number of words"); n > 0; --n)
     result.note += (result.note.empty() ? "" : " ") + file.word("a word");
@@ -50,6 +54,8 @@ inline Orl_correspondences read_correspondences(const std::string& path)
   result.branches.resize(file.count("the number of branches"));
   for (Orl_correspondences::Branch& b : result.branches) {
     b.parent = index();
+    if (has_confidences && !file.skip("-"))
+      b.confidence = file.real("confidence");
     for (std::size_t t = 0; t < 2; ++t) {
       b.first[t] = index();
       b.tip[t] = index();

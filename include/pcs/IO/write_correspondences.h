@@ -9,6 +9,7 @@
 #include <pcs/IO/internal/numbers.h>
 #include <pcs/core/Orl_correspondences.h>
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <sstream>
@@ -27,7 +28,7 @@ public:
 
   void write(const Orl_correspondences& c)
   {
-    m_line = "pcs_correspondences 3\nnote";
+    m_line = "pcs_correspondences 4\nnote";
     add_words(c.note);
     end();
     write_trees(c);
@@ -95,6 +96,10 @@ private:
   void write_branch(const Orl_correspondences::Branch& b)
   {
     add_index(b.parent);
+    if (std::isfinite(b.confidence))
+      add(b.confidence);
+    else
+      m_line += " -";
     for (std::size_t t = 0; t < 2; ++t) {
       add_index(b.first[t]);
       add_index(b.tip[t]);

@@ -34,6 +34,8 @@ struct Orl_correspondences
     std::array<double, 2> attachment = {0,
                                         0}; ///< node of the parent plus fraction of the edge behind
     std::array<bool, 2> is_continued = {false, false}; ///< whether it continues its cut parent
+    //! see `Branch_match::confidence`; NaN: not known [-]
+    double confidence = std::numeric_limits<double>::quiet_NaN();
   };
   //! a point of either tree on an edge of the common topology; `no_point` where there is none
   struct Pair

@@ -58,7 +58,7 @@ struct Branch_match
   //! How certain the match is, in [0, 1]: `D / (C + D)` for a pair of energy `C`, without which
   //! the energy of the matching increases at least by `D`; but at most that of the parents. 0:
   //! another match is as good, 0.5: the alternative costs twice as much as the pair. NaN if a tree
-  //! lacks the branch, or the correspondences were given to `build_from()`. [-]
+  //! lacks the branch, or it was not stored with the correspondences of `build_from()`. [-]
   double confidence = std::numeric_limits<double>::quiet_NaN();
 };
 

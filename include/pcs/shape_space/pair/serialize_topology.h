@@ -40,6 +40,7 @@ inline Orl_correspondences store_topology(const Common_topology& topology,
     branch.parent = b.parent;
     branch.nodes = b.node;
     branch.attachment = b.attachment;
+    branch.confidence = b.confidence;
     for (std::size_t t = 0; t < 2; ++t)
       if (b.path[t] != none) {
         const Branch_path& path = topology.paths[t].paths[b.path[t]];
@@ -103,6 +104,8 @@ private:
     branch.parent = b.parent;
     branch.node = b.nodes;
     branch.attachment = b.attachment;
+    check(!(b.confidence < 0 || b.confidence > 1), "a confidence is not between 0 and 1");
+    branch.confidence = b.confidence;
     for (std::size_t t = 0; t < 2; ++t)
       add_path(i, t, branch);
     check(branch.path[0] != none || branch.path[1] != none, "a branch is in neither tree");
