@@ -4,6 +4,7 @@
 
 #include <pcs/Orl_shape_space.h>
 #include <pcs/compare_trees.h>
+#include <pcs/generators/grow_tree.h>
 #include <pcs/orl_geodesic.h>
 #include <support/exceptions.h>
 #include <support/orl_trees.h>
@@ -349,6 +350,43 @@ BOOST_AUTO_TEST_CASE(a_smaller_epsilon_comes_nearer_to_the_exact_pairs)
   BOOST_TEST_MESSAGE("pairs in common: epsilon 1 " << coarse << ", 0.01 " << fine);
   BOOST_TEST(fine > 0.9);
   BOOST_TEST(fine > coarse + 0.1);
+}
+
+BOOST_AUTO_TEST_CASE(opposite_branches_stay_opposite)
+{
+  const auto opposite_tree = [](unsigned seed, std::size_t whorl) {
+    pcs::Tree_habit habit = pcs::broadleaf_habit().scaled(0.4);
+    habit.number_of_orders = 2;
+    habit.whorl = whorl;
+    Tree tree;
+    pcs::grow_tree(tree, habit, np::random_seed(seed));
+    return tree;
+  };
+  const auto build = [](Space& space, const Tree& a, const Tree& b, bool do_keep) {
+    space.add_skeleton(a);
+    space.add_skeleton(b);
+    pcs::Matching_weights weights;
+    weights.do_keep_whorls = do_keep;
+    return space.build(np::matching_weights(weights));
+  };
+  const Tree a = opposite_tree(1, 2), b = opposite_tree(2, 2);
+  Space space, free, middle;
+  pcs::Orl_report report = build(space, a, b, true);
+  BOOST_TEST(report.number_of_whorls[0] > 20u);
+  BOOST_TEST(report.number_of_whorls[1] > 20u);
+  BOOST_TEST(report.number_of_broken_whorls[0] <= 1u);
+  BOOST_TEST(report.number_of_broken_whorls[1] <= 1u);
+  BOOST_TEST(build(free, a, b, false).number_of_broken_whorls[0] > 10u);
+  // also in the tree half-way
+  Tree half;
+  space.skeleton(space.geodesic(0, 1, 0.5), half);
+  BOOST_TEST(10 * build(middle, half, half, true).number_of_whorls[0] >=
+             9 * report.number_of_whorls[0]);
+  // opposite branches of one tree have partners that are alternate: the report says so
+  Space mixed;
+  report = build(mixed, a, opposite_tree(3, 1), true);
+  BOOST_TEST(report.number_of_whorls[1] == 0u);
+  BOOST_TEST(report.number_of_broken_whorls[0] > 5u);
 }
 
 BOOST_AUTO_TEST_CASE(the_status_tells_that_transports_did_not_converge)

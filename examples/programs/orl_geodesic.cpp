@@ -193,6 +193,8 @@ nlohmann::ordered_json report_json(const Space& space,
     if (is_pair) {
       json["number_of_branches"] = r.number_of_branches;
       json["number_of_matched_branches"] = r.number_of_matched_branches;
+      json["number_of_whorls"] = r.number_of_whorls;
+      json["number_of_broken_whorls"] = r.number_of_broken_whorls;
     }
     for (const Tree_file& file : files)
       json["number_of_points"].push_back(file.points.number_of_points());
@@ -206,6 +208,17 @@ nlohmann::ordered_json report_json(const Space& space,
                      {"instances", r.seconds.instances},
                      {"correspondences", r.seconds.total()}};
   return json;
+}
+
+/// Says which arrangements of branches are not kept on the path.
+void warn_of_whorls(const Options& o, const pcs::Orl_report& r)
+{
+  for (std::size_t t = 0; t < 2 && !o.is_quiet; ++t)
+    if (r.number_of_broken_whorls[t] > 0)
+      std::cerr << "orl_geodesic: warning: " << r.number_of_broken_whorls[t] << " of "
+                << r.number_of_whorls[t] << " opposite pairs or whorls of branches of "
+                << (o.skeletons.empty() ? o.trees : o.skeletons)[t]
+                << " separate on the path, because the other tree has another arrangement there\n";
 }
 
 /// Returns which tree is read from the skeleton file `i`.
@@ -316,6 +329,7 @@ void run(const Options& o)
         add(space, file);
     }
     report = build(space, o, stored);
+    warn_of_whorls(o, report);
   } else {
     report.status = pcs::Status::converged;
     report.number_of_trees = space.number_of_trees();

@@ -48,7 +48,10 @@ struct Matching_weights
   double inherited_rotation = 0.1; ///< of the parent's rotation in the same estimate [-]
   bool is_rotation_inherited =
       true; ///< whether rotations of parents are passed on to their children
-  //! the published energy: no rotations, `unmatched` is 1, positions in units of
+  //! whether the members of a pair or whorl, such as opposite branches, have partners in one whorl,
+  //! if both parents are arranged in whorls. Trees on a path then keep this arrangement
+  bool do_keep_whorls = true;
+  //! the published energy: no rotations, no whorls, `unmatched` is 1, positions in units of
   //! the parent's length
   bool is_published = false;
   double fork_ratio = default_fork_ratio;       ///< see `default_fork_ratio` [-]

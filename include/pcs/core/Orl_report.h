@@ -28,8 +28,14 @@ struct Orl_report
   std::array<std::size_t, 2> number_of_nodes = {0, 0};    ///< of the trees [count]
   std::array<std::size_t, 2> number_of_branches = {0, 0}; ///< of the trees, as matched [count]
   std::size_t number_of_matched_branches = 0;             ///< pairs of branches [count]
-  std::size_t number_of_edges = 0;                        ///< of the common topology [count]
-  double matching_energy = 0; ///< of the branches, in units of the longest paths [-]
+  //! two trees: opposite pairs and whorls of branches, below parents that are arranged in whorls
+  //! [count]
+  std::array<std::size_t, 2> number_of_whorls = {0, 0};
+  //! of these, whorls whose members separate on the path, because their partners are not in one
+  //! whorl of the other tree [count]
+  std::array<std::size_t, 2> number_of_broken_whorls = {0, 0};
+  std::size_t number_of_edges = 0; ///< of the common topology [count]
+  double matching_energy = 0;      ///< of the branches, in units of the longest paths [-]
   //! two trees: 0 if the whole smaller tree has a counterpart in the other, 1 if no part has [-]
   double unexplained_fraction = 0;
   //! two trees: whether branches were matched as growing at their tips instead of stretching

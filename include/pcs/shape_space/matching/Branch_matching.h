@@ -10,6 +10,7 @@
 #include <pcs/internal/progress.h>
 #include <pcs/shape_space/matching/Matching_energy.h>
 #include <pcs/shape_space/matching/Matching_memo.h>
+#include <pcs/shape_space/matching/assign_whorls.h>
 #include <pcs/shape_space/matching/compare_branches.h>
 #include <pcs/shape_space/matching/linear_assignment.h>
 #include <pcs/shape_space/model/Branch_paths.h>
@@ -496,8 +497,53 @@ private:
                          [&](std::size_t r, std::size_t c, double least) {
                            gain[r * m + c] = least + rest(rows[r], columns[c]);
                          });
+    const auto match_pair = [&](std::size_t r, std::size_t c) {
+      const std::size_t i = rows[r], j = columns[c];
+      Answer& found = exact[r * m + c];
+      found = match(path_1.children[i].start, path_2.children[j].start, turned);
+      gain[r * m + c] = std::isfinite(found.cost) ? found.cost + rest(i, j) : 0;
+    };
+    const auto make_exact = [&](auto& assignment) {
+      return make_pairs_exact(a,
+                              b,
+                              rows,
+                              columns,
+                              match_pair,
+                              limit,
+                              gain,
+                              exact,
+                              assignment,
+                              result);
+    };
+    // batches may divide whorls
+    const bool may_keep_whorls = m_energy.weights().do_keep_whorls && n == a.s.size() &&
+                                 m == b.s.size() && !m_energy.weights().is_published;
+    const Whorls whorls_1 = may_keep_whorls ? find_whorls(a.s) : Whorls();
+    const Whorls whorls_2 = whorls_1.empty() ? Whorls() : find_whorls(b.s);
+    if (!whorls_2.empty()) {
+      Whorl_assignment assignment(whorls_1, whorls_2, gain);
+      return make_exact(assignment);
+    }
     Assignment assignment(n, m, gain);
     assignment.solve();
+    return make_exact(assignment);
+  }
+
+  /// Replaces the bounds of assigned pairs by exact costs until all of them are exact. Adds the
+  /// pairs and their gains; returns `false` if the cost is not below `limit`.
+  template <class MatchPair, class Pairs>
+  bool make_pairs_exact(const Children& a,
+                        const Children& b,
+                        const std::vector<std::size_t>& rows,
+                        const std::vector<std::size_t>& columns,
+                        const MatchPair& match_pair,
+                        double limit,
+                        const std::vector<double>& gain,
+                        const std::vector<Answer>& exact,
+                        Pairs& assignment,
+                        Matched_branch& result)
+  {
+    const std::size_t n = rows.size(), m = columns.size();
     const std::vector<std::size_t>& partner = assignment.columns();
     std::vector<std::size_t> wanted;
     for (;;) {
@@ -516,12 +562,7 @@ private:
       keep_heaviest(a, b, rows, columns, partner, wanted);
       pcs::internal::for_each_index<ConcurrencyTag>(
           wanted.size(),
-          [&](std::size_t k) {
-            const std::size_t r = wanted[k], c = partner[r], i = rows[r], j = columns[c];
-            Answer& found = exact[r * m + c];
-            found = match(path_1.children[i].start, path_2.children[j].start, turned);
-            gain[r * m + c] = std::isfinite(found.cost) ? found.cost + rest(i, j) : 0;
-          },
+          [&](std::size_t k) { match_pair(wanted[k], partner[wanted[k]]); },
           1);
       assignment.raise(wanted);
     }

@@ -11,6 +11,7 @@
 #include <pcs/core/Orl_space_data.h>
 #include <pcs/internal/Stage_timer.h>
 #include <pcs/internal/progress.h>
+#include <pcs/shape_space/matching/count_whorls.h>
 #include <pcs/shape_space/model/Build_run.h>
 #include <pcs/shape_space/model/Point_pair.h>
 #include <pcs/shape_space/pair/Embedded_pair.h>
@@ -140,6 +141,9 @@ inline void describe(const Embedded_pair& pair, Orl_report& report)
       report.number_of_branches[static_cast<std::size_t>(t)] += b.is_virtual(t) ? 0 : 1;
     report.number_of_matched_branches += b.is_virtual(0) || b.is_virtual(1) ? 0 : 1;
   }
+  const Whorl_counts whorls = count_whorls(pair.topology);
+  report.number_of_whorls = whorls.number;
+  report.number_of_broken_whorls = whorls.broken;
   report.number_of_edges = pair.layout.number_of_edges();
   report.distance = distance(pair.x[0], pair.x[1], pair.weights, Orl_metric::sum);
   report.number_of_point_pairs = pair.instances.pairs().size();
