@@ -1,0 +1,139 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Memory of all algorithms per point, as the documentation states it.
+
+#include <pcs/Point_set_deformation.h>
+#include <pcs/extract_tree_skeleton.h>
+#include <pcs/generators/grow_tree.h>
+#include <pcs/generators/scan_tree.h>
+#include <pcs/orl_geodesic.h>
+#include <pcs/registration/Point_set_fitting.h>
+#include <support/allocations.h>
+
+#include <CGAL/Simple_cartesian.h>
+#include <CGAL/tags.h>
+
+#include <boost/test/unit_test.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace test_peak_memory {
+
+namespace {
+
+using Kernel = CGAL::Simple_cartesian<double>;
+using Point = Kernel::Point_3;
+using Tree = pcs::Tree_skeleton<Kernel>;
+
+/// A pillar of height 10 and radius 1.
+std::vector<Point> pillar(std::size_t n)
+{
+  std::vector<Point> points;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double angle = 2.39996 * double(i);
+    points.emplace_back(std::cos(angle), std::sin(angle), 10 * double(i) / double(n));
+  }
+  return points;
+}
+
+std::vector<Point> scan_of(const Tree& tree, double degrees)
+{
+  pcs::Virtual_scanner scanner;
+  scanner.number_of_stations = 3;
+  scanner.angular_step = degrees * CGAL_PI / 180;
+  pcs::Virtual_scan<Kernel> scan;
+  pcs::scan_tree(tree, scan, scanner, pcs::parameters::random_seed(3));
+  return scan.points;
+}
+
+Tree tree_of(std::uint64_t seed)
+{
+  Tree tree;
+  pcs::grow_tree(tree, pcs::broadleaf_habit(), pcs::parameters::random_seed(seed));
+  return tree;
+}
+
+/// Returns the largest number of bytes per point that `work()` allocates at a time.
+template <class Work>
+double peak(std::size_t number_of_points, const Work& work)
+{
+  const long before = pcs_test::allocated_bytes;
+  pcs_test::peak_of_bytes = before;
+  work();
+  const double bytes = double(pcs_test::peak_of_bytes - before) / double(number_of_points);
+  BOOST_TEST_MESSAGE("peak: " << bytes << " bytes per point");
+  return bytes;
+}
+
+} // namespace
+
+// Sequential, since a thread scheduler allocates memory as well.
+BOOST_AUTO_TEST_SUITE(peak_memory)
+
+BOOST_AUTO_TEST_CASE(a_session_of_deformation)
+{
+  constexpr std::size_t n = 200000;
+  std::vector<Point> points = pillar(n);
+  const std::vector<std::size_t> foot = {0, 1, 2, 3};
+  const long before = pcs_test::allocated_bytes;
+  double kept = 0;
+  const double most = peak(n, [&] {
+    using Session = pcs::Point_set_deformation<std::vector<Point>,
+                                               pcs::parameters::Default_named_parameters,
+                                               CGAL::Sequential_tag>;
+    Session session(points);
+    kept = double(pcs_test::allocated_bytes - before) / double(n);
+    session.add_handle(foot);
+    session.deform();
+  });
+  BOOST_TEST_MESSAGE("kept: " << kept << " bytes per point");
+  BOOST_TEST(kept < 175);
+  BOOST_TEST(most < 325);
+}
+
+BOOST_AUTO_TEST_CASE(a_skeleton)
+{
+  const std::vector<Point> scan = scan_of(tree_of(1), 0.08);
+  BOOST_TEST_REQUIRE(scan.size() > 100000u);
+  BOOST_TEST(peak(scan.size(), [&] {
+               Tree skeleton;
+               pcs::extract_tree_skeleton<CGAL::Sequential_tag>(scan, skeleton);
+             }) < 350);
+}
+
+BOOST_AUTO_TEST_CASE(a_registration)
+{
+  const std::vector<Point> rest = pillar(50000);
+  std::vector<Point> target;
+  for (const Point& p : rest)
+    target.emplace_back(p.x() + 0.01 * p.z() * p.z(), p.y(), p.z());
+  BOOST_TEST(peak(rest.size(), [&] {
+               std::vector<Point> points = rest;
+               pcs::Point_set_fitting<std::vector<Point>,
+                                      pcs::parameters::Default_named_parameters,
+                                      CGAL::Sequential_tag>
+                   session(points);
+               session.fit(target);
+             }) < 700);
+}
+
+BOOST_AUTO_TEST_CASE(a_geodesic)
+{
+  const Tree a = tree_of(1), b = tree_of(2);
+  const std::vector<Point> one = scan_of(a, 0.1), two = scan_of(b, 0.1);
+  const std::size_t n = one.size() + two.size();
+  BOOST_TEST_REQUIRE(n > 100000u);
+  BOOST_TEST(peak(n, [&] {
+               Tree between;
+               std::vector<Point> points;
+               pcs::orl_geodesic<CGAL::Sequential_tag>(a, one, b, two, 0.5, between, points);
+             }) < 400);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_peak_memory
