@@ -32,12 +32,12 @@ namespace internal {
 /// Divides the faces into triangles around their first corners. Throws `Invalid_input` if a corner
 /// does not exist, is not finite, or is missing.
 template <class PointRange, class FaceRange>
-std::vector<Triangle>
+std::vector<Mesh_triangle>
 triangles_of(const PointRange& points, const FaceRange& faces, const std::string& caller)
 {
   using Difference = typename std::iterator_traits<decltype(std::begin(points))>::difference_type;
   const auto n = static_cast<std::size_t>(std::distance(std::begin(points), std::end(points)));
-  std::vector<Triangle> triangles;
+  std::vector<Mesh_triangle> triangles;
   std::vector<Eigen::Vector3d> corners;
   std::size_t number = 0;
   for (const auto& face : faces) {

@@ -24,7 +24,7 @@ namespace pcs {
 namespace generators {
 namespace internal {
 
-using Triangle = std::array<Eigen::Vector3d, 3>;
+using Mesh_triangle = std::array<Eigen::Vector3d, 3>;
 /// A point and the unit normal of its triangle.
 using Oriented_sample = std::pair<Eigen::Vector3d, Eigen::Vector3d>;
 
@@ -121,12 +121,12 @@ private:
 };
 
 /// Returns the sums of the areas of the triangles up to each of them. [L^2]
-inline std::vector<double> sums_of_areas(const std::vector<Triangle>& triangles)
+inline std::vector<double> sums_of_areas(const std::vector<Mesh_triangle>& triangles)
 {
   std::vector<double> sums;
   sums.reserve(triangles.size());
   double sum = 0;
-  for (const Triangle& t : triangles) {
+  for (const Mesh_triangle& t : triangles) {
     sum += (t[1] - t[0]).cross(t[2] - t[0]).norm() / 2;
     sums.push_back(sum);
   }
@@ -135,7 +135,7 @@ inline std::vector<double> sums_of_areas(const std::vector<Triangle>& triangles)
 
 /// Returns points of the triangles at least `spacing` apart, in the order in which they were drawn.
 /// Messages of errors begin with `caller`.
-inline std::vector<Oriented_sample> sample_disks(const std::vector<Triangle>& triangles,
+inline std::vector<Oriented_sample> sample_disks(const std::vector<Mesh_triangle>& triangles,
                                                  double spacing,
                                                  std::uint64_t seed,
                                                  const std::string& caller)
@@ -146,7 +146,7 @@ inline std::vector<Oriented_sample> sample_disks(const std::vector<Triangle>& tr
   const double area = sums.empty() ? 0 : sums.back();
   check(area > 0 && std::isfinite(area), caller, "the faces have no area, or are too large");
   Eigen::Vector3d low = triangles[0][0], high = low;
-  for (const Triangle& t : triangles)
+  for (const Mesh_triangle& t : triangles)
     for (const Eigen::Vector3d& p : t) {
       low = low.cwiseMin(p);
       high = high.cwiseMax(p);
@@ -164,7 +164,8 @@ inline std::vector<Oriented_sample> sample_disks(const std::vector<Triangle>& tr
   for (std::uint64_t k = 0; k < number; ++k) {
     const double place = area * random.uniform();
     const auto at = std::upper_bound(sums.begin(), sums.end(), place) - sums.begin();
-    const Triangle& t = triangles[std::min(static_cast<std::size_t>(at), triangles.size() - 1)];
+    const Mesh_triangle& t =
+        triangles[std::min(static_cast<std::size_t>(at), triangles.size() - 1)];
     const double s = std::sqrt(random.uniform()), r = random.uniform();
     const Eigen::Vector3d p = (1 - s) * t[0] + s * (1 - r) * t[1] + s * r * t[2];
     if (!grid.is_free(p))
