@@ -100,7 +100,10 @@
   PCS_OWN(points_of)                                                                               \
   PCS_OWN(sampling_options)                                                                        \
   PCS_OWN(is_monotone)                                                                             \
-  PCS_OWN(change_limits)
+  PCS_OWN(change_limits)                                                                           \
+  /* fit_tree_habit() */                                                                           \
+  PCS_OWN(smallest_radius)                                                                         \
+  PCS_OWN(number_of_simulations)
 namespace pcs {
 namespace internal_np {
 

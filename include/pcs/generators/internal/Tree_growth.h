@@ -8,6 +8,7 @@
 #include <pcs/core/Tree_skeleton.h>
 #include <pcs/core/errors.h>
 #include <pcs/generators/Tree_habit.h>
+#include <pcs/generators/internal/crown_reach.h>
 #include <pcs/generators/internal/normal_vector.h>
 #include <pcs/internal/Random_stream.h>
 #include <pcs/internal/constants.h>
@@ -240,21 +241,6 @@ private:
     return bud;
   }
 
-  //! returns the reach of a branch that leaves the trunk at the fraction `x` of the crown
-  double reach(double x) const
-  {
-    switch (m_habit.crown) {
-    case Crown_shape::cone:
-      return m_habit.crown_radius * (0.06 + 0.94 * (1 - x));
-    case Crown_shape::vase:
-      return m_habit.crown_radius * std::min(0.5 + 0.8 * x, 2.6 * (1.1 - x));
-    case Crown_shape::dome:
-      break;
-    }
-    const double y = x < 0.35 ? 0.6 * (0.35 - x) / 0.35 : (x - 0.35) / 0.7;
-    return m_habit.crown_radius * std::sqrt(std::max(0.01, 1 - y * y));
-  }
-
   void sprout(const Bud& bud, std::size_t branch, const std::vector<Place>& places)
   {
     constexpr double golden_angle = 2.399963229728653;
@@ -299,7 +285,8 @@ private:
     const double full = random.uniform(0.8, 1.05);
     if (parent.kind == Kind::stem) {
       bud.radius = std::min(bud.radius, m_habit.largest_branch);
-      bud.length = std::min(slender * bud.radius, full * reach(share));
+      bud.length = std::min(slender * bud.radius,
+                            full * crown_reach(m_habit.crown, m_habit.crown_radius, share));
       // branches shortened by the crown are thinner as well
       bud.radius = std::min(bud.radius, bud.length / (0.6 * slenderness.least));
     } else {
