@@ -135,6 +135,8 @@ public:
       for (std::size_t i = 0; i < number_of_parameters; ++i)
         if (is_corrected(i, measured)) {
           const double bias = quantile(column(found, i), 0.5) - wanted[i];
+          if (round == 0)
+            m_first_bias[i] = bias;
           const double most = largest_correction(i, measured);
           now[i] = std::clamp(now[i] - bias, wanted[i] - most, wanted[i] + most);
         }
@@ -163,9 +165,10 @@ public:
         const double spread = (quantile(c, 0.84) - quantile(c, 0.16)) / 2;
         value.standard_error =
             p.scale == Scale::linear ? spread : value.value * std::expm1(std::min(spread, 5.0));
-        const double step = step_error(value.name, habit), widening = correction_error();
-        value.least = p.restored(wanted - widening * (quantile(c, 0.975) - here)) - step;
-        value.largest = p.restored(wanted - widening * (quantile(c, 0.025) - here)) + step;
+        const double step = step_error(value.name, habit);
+        const double widening = correction_error() * stretch(i, wanted - here, spread);
+        value.least = p.restored(here - widening * (quantile(c, 0.975) - wanted)) - step;
+        value.largest = p.restored(here - widening * (quantile(c, 0.025) - wanted)) + step;
         const std::size_t row = tropism_row(i);
         const double margin = row < 3 ? 1.96 * measured.tropism_error[row] : 0;
         value.least = std::min(value.least, value.value - margin);
@@ -191,6 +194,15 @@ private:
   double correction_error() const
   {
     return std::sqrt(1 + pcs::internal::pi / 2 / static_cast<double>(number_of_corrections()));
+  }
+
+  /// The change of a parameter that changes its estimate by 1, from the first bias and the whole
+  /// `correction`; 1 where the bias is small against the `spread` of the estimates.
+  double stretch(std::size_t i, double correction, double spread) const
+  {
+    constexpr double most = 2.5;
+    const double bias = std::abs(m_first_bias[i]);
+    return bias > spread / 2 ? std::clamp(std::abs(correction) / bias, 1.0, most) : 1;
   }
 
   /// Row of a tropism parameter, or 3.
@@ -267,6 +279,7 @@ private:
   std::uint64_t m_seed;
   std::size_t m_number;
   std::vector<double> m_heights;
+  Parameter_values m_first_bias{};
 };
 
 } // namespace habit

@@ -262,7 +262,8 @@ private:
   lean q0, is q0^2 e^2 + D (L - 2 e L + (1 - exp(-2 k L)) / (2 k)) / (k L)^2, where e is
   (1 - exp(-k L)) / (k L).
 */
-inline double fit_trunk_tropism(const Samples& trees, const Tree_habit& habit)
+inline double
+fit_trunk_tropism(const Samples& trees, const Tree_habit& habit, double variance_factor = 1)
 {
   double observed = 0, length = 0, step = 0;
   const double n = static_cast<double>(trees.size());
@@ -273,6 +274,7 @@ inline double fit_trunk_tropism(const Samples& trees, const Tree_habit& habit)
     length += trunk.length() / n;
     step += trunk.length() / static_cast<double>(trunk.points.size() - 1) / n;
   }
+  observed *= variance_factor; // of the measured trees, for bounds of the result
   const double bend = habit.bend[0] / habit.bend_length;
   const double intensity = 2 * bend * bend * step / habit.bend_renewal;
   const auto variance = [&](double k) {

@@ -14,6 +14,7 @@
 #include <pcs/generators/habit/fit_bends.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -22,16 +23,28 @@ namespace pcs {
 namespace generators {
 namespace habit {
 
-/// Sets the tropism of the trunk to the value by which the trunks tilt as much as measured, with the
-/// corrected bends.
+/// Sets the tropism of the trunk to the value by which the trunks tilt as much as measured, with
+/// the corrected bends. The squared tilt of `n` trunks has 2 n degrees of freedom (bounds by Wilson
+/// and Hilferty 1931).
 inline void set_trunk_tropism(const Samples& trees, Tree_habit_fit& fit)
 {
   fit.habit.tropism[0] = fit_trunk_tropism(trees, fit.habit);
+  const double n = 2 * static_cast<double>(trees.size());
+  const auto share = [n](double z) {
+    return std::pow(1 - 2 / (9 * n) + z * std::sqrt(2 / (9 * n)), 3);
+  };
+  Tree_habit low = fit.habit, high = fit.habit;
+  for (const Habit_value& v : fit.values)
+    if (v.name == "bend[0]") {
+      low.bend[0] = std::min(v.least, 0.5);
+      high.bend[0] = std::min(v.largest, 0.5);
+    }
   for (Habit_value& v : fit.values)
     if (v.name == "tropism[0]") {
       v.value = fit.habit.tropism[0];
-      v.least = std::min(v.least, v.value);
-      v.largest = std::max(v.largest, v.value);
+      v.least = std::min(v.value, fit_trunk_tropism(trees, low, 1 / share(-1.96)));
+      v.largest = std::max(v.value, fit_trunk_tropism(trees, high, 1 / share(1.96)));
+      v.standard_error = (v.largest - v.least) / (2 * 1.96);
     }
 }
 
