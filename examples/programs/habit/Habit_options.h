@@ -1,0 +1,152 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The command line of the program fit_tree_habit.
+
+#ifndef PCS_EXAMPLES_PROGRAMS_HABIT_HABIT_OPTIONS_H
+#define PCS_EXAMPLES_PROGRAMS_HABIT_HABIT_OPTIONS_H
+
+#include "common/Distinct_files.h"
+#include "common/is_seed.h"
+#include <pcs/core/errors.h>
+
+#include <CLI/CLI.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <system_error>
+#include <vector>
+
+namespace program {
+
+struct Habit_options
+{
+  std::vector<std::string> input, score;
+  std::string habit, output, report;
+  std::string unit = "m";
+  double smallest_radius = 0, radius_error = 0;
+  std::int64_t simulations = 100, seed = 0, grow = 0;
+  double height = 0, height_spread = -1, distance = -1;
+  std::vector<double> age = {1};
+  bool is_quiet = false;
+};
+
+inline const char* habit_help()
+{
+  return R"(With --input, the growth parameters of the trees are found and written to --habit.
+Without it, --habit is read. Skeletons are SWC, CSV, tables of cylinders, or .txtskl; z is up.
+
+The habit is a JSON file: all parameters with standard errors and 95 % intervals, whether the
+trees determine them, power laws of the sizes, and the quantiles of lengths, radii, angles and
+numbers of branches by order, for L-systems of other programs.
+
+--smallest-radius is the resolution of the skeletons: thinner parts are left out, because scans
+show them incompletely. Skeleton files have no standard errors; --radius-error states them.
+
+--grow N writes N trees that grow by the habit as SWC: forest.swc gives forest_1.swc, ... .
+They stand apart. --score tells for each tree how far it is from trees of its height that grow
+by the habit: the distance is about 1 for a similar tree; the share of grown trees that are as
+far is small for an outlier.
+
+For example:
+  fit_tree_habit --input oak_1.swc oak_2.swc --smallest-radius 0.01 --habit oak.json
+  fit_tree_habit --habit oak.json --grow 20 --output forest.swc --age 0.5 1
+  fit_tree_habit --habit oak.json --score unknown.swc
+
+Exit codes: 0 success, 1 bad input or usage, 2 internal error.)";
+}
+
+inline void declare(CLI::App& app, Habit_options& o)
+{
+  app.footer(habit_help());
+  app.set_version_flag("--version", PCS_PROGRAM_VERSION);
+  app.add_option("--habit", o.habit, "the habit (JSON), written with --input, otherwise read")
+      ->required();
+  app.add_option("--seed", o.seed, "random seed")->check(is_seed)->capture_default_str();
+  app.add_option("--simulations", o.simulations, "grown trees for intervals and scores")
+      ->check(CLI::Range(std::int64_t(20), std::int64_t(100000)))
+      ->capture_default_str();
+  app.add_option("--report", o.report, "write trees and scores here (JSON)");
+  app.add_flag("--quiet", o.is_quiet, "print warnings and errors only");
+
+  const char* fit = "Fit";
+  app.add_option("--input", o.input, "skeletons of trees of one habit")->group(fit);
+  app.add_option("--smallest-radius", o.smallest_radius, "thinner parts are left out")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str()
+      ->group(fit);
+  app.add_option("--radius-error", o.radius_error, "relative standard error of the radii")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str()
+      ->group(fit);
+  app.add_option("--unit", o.unit, "name of the unit of length, for the file")
+      ->capture_default_str()
+      ->group(fit);
+
+  const char* grow = "Growth";
+  app.add_option("--grow", o.grow, "number of trees")
+      ->check(CLI::Range(std::int64_t(1), std::int64_t(100000)))
+      ->group(grow);
+  app.add_option("-o,--output", o.output, "the grown trees (SWC), see below")->group(grow);
+  app.add_option("--height", o.height, "mean length of the trunks; 0: as measured")
+      ->check(CLI::NonNegativeNumber)
+      ->group(grow);
+  app.add_option("--height-spread", o.height_spread, "standard deviation of ln(height)")
+      ->check(CLI::Range(0.0, 1.0))
+      ->group(grow);
+  app.add_option("--age", o.age, "fraction of the final age, or a range")
+      ->expected(1, 2)
+      ->group(grow);
+  app.add_option("--distance", o.distance, "least distance of trunks; 0: all at the origin")
+      ->check(CLI::NonNegativeNumber)
+      ->group(grow);
+
+  app.add_option("--score", o.score, "skeletons that are compared with the habit");
+}
+
+/// Returns the name of grown tree `i`, counted from 0, of `number`.
+inline std::string output_name(const std::string& path, std::size_t i, std::size_t number)
+{
+  if (number == 1)
+    return path;
+  const std::filesystem::path p(path);
+  const std::string name = p.stem().string() + "_" + std::to_string(i + 1) + p.extension().string();
+  return (p.parent_path() / name).string();
+}
+
+/// Checks the options further than CLI11 can. Throws `pcs::Invalid_input` or `pcs::IO_error`.
+inline void check(const Habit_options& o)
+{
+  if ((o.grow > 0) != !o.output.empty())
+    throw pcs::Invalid_input("--grow and --output belong together");
+  if (o.input.empty() && o.grow == 0 && o.score.empty())
+    throw pcs::Invalid_input("nothing to do; give --input, --grow or --score");
+  namespace fs = std::filesystem;
+  Distinct_files distinct;
+  for (const std::string& path : o.input)
+    distinct.add_input(path);
+  for (const std::string& path : o.score)
+    distinct.add_input(path);
+  std::vector<std::string> written = {o.report};
+  if (o.input.empty())
+    distinct.add_input(o.habit);
+  else
+    written.push_back(o.habit);
+  const auto number = static_cast<std::size_t>(o.grow);
+  for (std::size_t i = 0; i < number; ++i)
+    written.push_back(output_name(o.output, i, number));
+  for (const std::string& path : written) {
+    std::error_code error;
+    const fs::path folder = fs::path(path).parent_path();
+    if (!path.empty() && !folder.empty() && !fs::is_directory(folder, error))
+      throw pcs::IO_error(path, "there is no such folder");
+    if (!path.empty() && fs::is_directory(path, error))
+      throw pcs::IO_error(path, "is a directory, expected a file name");
+    distinct.add_output(path);
+  }
+}
+
+} // namespace program
+
+#endif // PCS_EXAMPLES_PROGRAMS_HABIT_HABIT_OPTIONS_H

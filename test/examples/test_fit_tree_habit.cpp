@@ -1,0 +1,152 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Tests the program fit_tree_habit: files of habits, grown trees, scores, and invalid input.
+
+#include <pcs/IO/read_swc.h>
+#include <pcs/IO/write_swc.h>
+#include <pcs/generators/grow_tree.h>
+
+#include <CGAL/Simple_cartesian.h>
+
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <examples/Program_run.h>
+#include <string>
+
+namespace test_fit_tree_habit_program {
+
+using Kernel = CGAL::Simple_cartesian<double>;
+using Tree = pcs::Tree_skeleton<Kernel>;
+
+namespace {
+
+struct Habit_run : Program_run
+{
+  Habit_run() : Program_run("fit_tree_habit")
+  {
+    Tree tree;
+    for (const int seed : {1, 2}) {
+      pcs::grow_tree(tree, pcs::fruit_habit(), pcs::parameters::random_seed(seed));
+      pcs::IO::write_swc(path("tree_" + std::to_string(seed) + ".swc"), tree);
+    }
+    pcs::grow_tree(tree, pcs::weeping_habit().scaled(0.45));
+    pcs::IO::write_swc(path("other.swc"), tree);
+  }
+
+  void fit()
+  {
+    const int code = run("--input tree_1.swc tree_2.swc --habit habit.json --simulations 20");
+    BOOST_TEST_REQUIRE(code == 0, err);
+  }
+
+  void refuses(const std::string& arguments, const std::string& word)
+  {
+    const std::size_t files = number_of_files();
+    const int code = run(arguments);
+    BOOST_TEST(code == 1, arguments << ": exit code " << code);
+    BOOST_TEST(err.find(word) != std::string::npos, word << " in " << err);
+    BOOST_TEST(number_of_files() == files, arguments);
+  }
+};
+
+} // namespace
+
+BOOST_FIXTURE_TEST_SUITE(fit_tree_habit_program, Habit_run)
+
+BOOST_AUTO_TEST_CASE(the_file_has_values_units_and_distributions)
+{
+  fit();
+  const Json habit = Json::parse(content("habit.json"));
+  BOOST_TEST(habit["format"] == "pcs_tree_habit");
+  BOOST_TEST(habit["version"] == 1);
+  BOOST_TEST(habit["length_unit"] == "m");
+  BOOST_TEST(habit["number_of_trees"] == 2);
+  BOOST_TEST(std::abs(habit["habit"]["height"].get<double>() - 3.2) < 1e-6);
+  BOOST_TEST(habit["habit"]["crown"] == "vase");
+  std::size_t found = 0;
+  for (const Json& v : habit["values"])
+    if (v["name"] == "spacing[1]") {
+      ++found;
+      BOOST_TEST(v["unit"] == "m");
+      BOOST_TEST(v["value"] == habit["habit"]["spacing"][1]);
+      BOOST_TEST(v["interval_95"][0] <= v["value"]);
+      BOOST_TEST(v["interval_95"][1] >= v["value"]);
+    }
+  BOOST_TEST(found == 1u);
+  BOOST_TEST(habit["distributions"].size() == 4u);
+  BOOST_TEST(habit["distributions"][1]["insertion"].size() == habit["quantiles"].size());
+}
+
+BOOST_AUTO_TEST_CASE(a_habit_that_was_read_grows_the_same_trees)
+{
+  BOOST_TEST_REQUIRE(run("--input tree_1.swc tree_2.swc --habit habit.json --simulations 20 "
+                         "--grow 2 -o at_once.swc") == 0,
+                     err);
+  BOOST_TEST_REQUIRE(run("--habit habit.json --grow 2 -o later.swc --report report.json --quiet") ==
+                         0,
+                     err);
+  BOOST_TEST(out == "");
+  for (const std::string number : {"1", "2"}) {
+    BOOST_TEST(content("at_once_" + number + ".swc") == content("later_" + number + ".swc"));
+    Tree tree;
+    pcs::IO::read_swc<Kernel>(path("later_" + number + ".swc"), tree);
+    BOOST_TEST(tree[boost::graph_bundle].branches.size() > 50u);
+  }
+  report = Json::parse(content("report.json"));
+  BOOST_TEST(report["trees"].size() == 2u);
+  BOOST_TEST(report["trees"][1]["volume"].get<double>() > 0);
+  BOOST_TEST_REQUIRE(run("--habit habit.json --grow 1 -o one.swc --age 0.5 --seed 4") == 0, err);
+  BOOST_TEST(content("one.swc").size() > 1000u);
+}
+
+BOOST_AUTO_TEST_CASE(another_kind_of_tree_is_an_outlier)
+{
+  fit();
+  BOOST_TEST_REQUIRE(run("--habit habit.json --score tree_1.swc other.swc --report report.json") ==
+                         0,
+                     err);
+  report = Json::parse(content("report.json"));
+  BOOST_TEST(report["scores"][0]["share"].get<double>() > 0.02);
+  BOOST_TEST(report["scores"][1]["share"].get<double>() < 0.02);
+  BOOST_TEST(out.find("largest deviations") != std::string::npos);
+}
+
+BOOST_AUTO_TEST_CASE(bad_input_is_refused_and_touches_no_file)
+{
+  fit();
+  const std::string good = content("habit.json");
+  refuses("--input tree_1.swc", "--habit");
+  refuses("--habit habit.json", "nothing to do");
+  refuses("--habit habit.json --grow 2", "--grow and --output belong together");
+  refuses("--habit habit.json --grow 1 -o tree_1.swc --score tree_1.swc", "named twice");
+  refuses("--habit habit.json --grow 1 -o habit.json", "named twice");
+  refuses("--habit new.json --input missing.swc", "missing.swc");
+  refuses("--habit habit.json --grow 1 -o a.swc --age 2", "age");
+  refuses("--habit none.json --grow 1 -o a.swc", "none.json: cannot be opened");
+  write("stem.swc", "1 0 0 0 0 0.1 -1\n2 0 0 0 2 0.05 1\n");
+  refuses("--habit new.json --input stem.swc", "a habit needs a trunk and at least 4 branches");
+
+  const auto refuses_file =
+      [&](const std::string& from, const std::string& to, const std::string& word) {
+        std::string text = good;
+        const std::size_t at = text.find(from);
+        BOOST_TEST_REQUIRE(at != std::string::npos, from);
+        text.replace(at, from.size(), to);
+        write("bad.json", text);
+        refuses("--habit bad.json --grow 1 -o a.swc", word);
+        refuses("--habit bad.json --grow 1 -o a.swc", "bad.json");
+      };
+  refuses_file("\"version\": 1", "\"version\": 2", "/version: expected version 1, found 2");
+  refuses_file("pcs_tree_habit", "other", "/format");
+  refuses_file("\"flare\":", "\"glare\":", "the key \"flare\" is missing");
+  refuses_file("\"crown\": \"vase\"", "\"crown\": \"ball\"", "/habit/crown");
+  refuses_file("\"whorl\": 1", "\"whorl\": -1", "/habit/whorl");
+  refuses_file("\"whorl\": 1", "\"whorl\": 1000", "whorl");
+  BOOST_TEST(content("habit.json") == good);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_fit_tree_habit_program
