@@ -34,6 +34,7 @@ RUNS = [
     ("Skeletons: time by stage", "bench_skeleton", []),
     ("Skeletons: steps beside the published ones", "bench_skeleton_ablation", []),
     ("Skeletons: standard errors", "bench_standard_errors", ["--trees", "5"]),
+    ("Growth parameters of known habits", "bench_tree_habit", ["--habits", "5"]),
     ("Stands: slopes and thin ground", "evaluate_stands", ["--stands", "1"]),
     ("Virtual scanner", "bench_scan_tree", []),
 ]
