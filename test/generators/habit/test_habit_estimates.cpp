@@ -10,6 +10,7 @@
 
 #include <boost/test/unit_test.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -60,6 +61,21 @@ BOOST_AUTO_TEST_CASE(unseen_and_bounded_values_leave_no_bias)
   BOOST_TEST_REQUIRE(range.has_value());
   BOOST_TEST(std::abs(range->least - 2) < 0.06);
   BOOST_TEST(std::abs(range->largest - 3) < 0.06);
+}
+
+BOOST_AUTO_TEST_CASE(a_limit_of_detection_does_not_narrow_a_range)
+{
+  // six of seven samples show nothing but the upper fifth of the range
+  Random_stream random(6);
+  std::vector<habit::Range_sample> samples;
+  for (int i = 0; i < 250; ++i) {
+    const double limit = i % 7 == 0 ? 0 : 2.8;
+    samples.push_back({random.uniform(std::max(2.0, limit), 3), 0.02, limit});
+  }
+  const auto range = habit::fit_range(samples);
+  BOOST_TEST_REQUIRE(range.has_value());
+  BOOST_TEST(std::abs(range->least - 2) < 0.1);
+  BOOST_TEST(std::abs(range->largest - 3) < 0.05);
 }
 
 BOOST_AUTO_TEST_CASE(single_outliers_do_not_widen_a_range)
