@@ -26,6 +26,7 @@ PROGRAMS = (
     "deform_point_set",
     "extract_tree_skeleton",
     "fit_point_set",
+    "fit_tree_habit",
     "merge_tiles",
     "orl_geodesic",
     "sample_mesh",
@@ -132,6 +133,8 @@ def make_inputs(programs, folder):
     for name, rows in trees.items():
         write_ply(os.path.join(folder, name + ".ply"), rows)
     shutil.copy(os.path.join(folder, "A.ply"), os.path.join(folder, "SCAN.ply"))
+    for name, copy in (("A", "oak_1"), ("B", "oak_2"), ("C", "unknown")):
+        shutil.copy(os.path.join(folder, name + ".swc"), os.path.join(folder, copy + ".swc"))
     stand = [
         [float(x) + 8 * k, float(y), float(z)]
         for k, rows in enumerate(trees.values())
