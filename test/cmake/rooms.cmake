@@ -155,6 +155,7 @@ set(shape_space_pair
   matching/Branch_matching.h
   matching/Match_confidences.h
   matching/build_topology.h
+  matching/count_whorls.h
   matching/find_yaw_candidates.h
   points/Point_instances.h
   points/assign_points.h
