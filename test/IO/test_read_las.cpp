@@ -157,6 +157,38 @@ BOOST_AUTO_TEST_CASE(long_counts_and_records_are_checked)
   refuses("a.las", bytes, "after the points");
 }
 
+BOOST_AUTO_TEST_CASE(waveforms_lie_after_the_points_and_inside_the_file)
+{
+  Las_file las;
+  las.format = 4;
+  las.minor = 3;
+  std::string bytes = las.bytes();
+  BOOST_TEST(read("a.las", bytes).number_of_points() == 3u);
+  const std::string waves = bytes + "waves";
+  patch<std::uint64_t>(bytes, 227, 1);
+  refuses("a.las", bytes, "byte 227: expected the waveforms after the points and inside the file");
+  patch<std::uint64_t>(bytes, 227, bytes.size() + 1);
+  refuses("a.las", bytes, "byte 227: expected the waveforms after the points and inside the file");
+  refuses("a.las", waves, "expected the end of the file, found 5 more bytes");
+  std::string whole = waves;
+  patch<std::uint64_t>(whole, 227, bytes.size());
+  BOOST_TEST(read("a.las", whole).number_of_points() == 3u);
+}
+
+BOOST_AUTO_TEST_CASE(headers_shorter_than_their_version_are_refused)
+{
+  for (const unsigned minor : {3u, 4u}) {
+    Las_file las;
+    las.minor = minor;
+    std::string bytes = las.bytes();
+    patch<std::uint16_t>(bytes, 94, 227);
+    refuses("a.las",
+            bytes,
+            "byte 94: expected a header of at least " + std::to_string(las.header_size()) +
+                " bytes, found 227");
+  }
+}
+
 BOOST_AUTO_TEST_SUITE_END()
 
 } // namespace test_read_las

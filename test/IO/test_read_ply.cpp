@@ -274,6 +274,22 @@ BOOST_AUTO_TEST_CASE(the_content_decides_on_the_format)
   BOOST_TEST(read("a.txt", header(one_vertex) + "1 2 3\n").number_of_points() == 1u);
 }
 
+BOOST_AUTO_TEST_CASE(repeated_and_longer_header_lines_are_refused)
+{
+  refuses("a.ply",
+          "ply\nformat ascii 1.0\nformat ascii 1.0\nend_header\n",
+          "line 3: expected one 'format' line in front of all elements");
+  refuses("a.ply",
+          "ply\nformat ascii 1.0 now\nend_header\n",
+          "line 2: expected the end of the line, found 'now'");
+  refuses("a.ply",
+          header("element vertex 1 2\n"),
+          "line 3: expected the end of the line, found '2'");
+  refuses("a.ply",
+          header("element vertex 1\nproperty float x y\n"),
+          "line 4: expected the end of the line, found 'y'");
+}
+
 BOOST_AUTO_TEST_SUITE_END()
 
 } // namespace test_read_ply

@@ -257,6 +257,50 @@ BOOST_AUTO_TEST_CASE(these_formats_are_not_written)
   BOOST_TEST(number_of_files() == 1u);
 }
 
+BOOST_AUTO_TEST_CASE(all_integer_types_of_pcd_are_read)
+{
+  const Point_table table = read("a.pcd",
+                                 "FIELDS x y z a b c d\nSIZE 4 4 4 1 1 8 8\nTYPE F F F I U I U\n"
+                                 "WIDTH 1\nHEIGHT 1\nDATA ascii\n"
+                                 "1 2 3 -128 255 -9007199254740993 18446744073709551615\n");
+  BOOST_TEST(int(table.property<std::int8_t>("a")[0]) == -128);
+  BOOST_TEST(int(table.property<std::uint8_t>("b")[0]) == 255);
+  BOOST_TEST(table.property<std::int64_t>("c")[0] == -9007199254740993);
+  BOOST_TEST(table.property<std::uint64_t>("d")[0] == std::numeric_limits<std::uint64_t>::max());
+}
+
+BOOST_AUTO_TEST_CASE(inconsistent_pcd_headers_are_refused)
+{
+  refuses("a.pcd",
+          "FIELDS x y z x\nSIZE 4 4 4 4\nTYPE F F F F\nWIDTH 0\nDATA ascii\n",
+          "the field 'x' is there twice");
+  refuses("a.pcd", "VERSION 0.7\nWIDTH 0\nDATA ascii\n", "expected the line FIELDS before DATA");
+  for (const char* lines :
+       {"SIZE 4 4\nTYPE F F F\n", "SIZE 4 4 4\nTYPE F F\n", "SIZE 4 4 4\nTYPE F F F\nCOUNT 1 1\n"})
+    refuses("a.pcd",
+            std::string("FIELDS x y z\n") + lines + "WIDTH 0\nDATA ascii\n",
+            "as many words in the lines SIZE, TYPE and COUNT as in FIELDS");
+  for (const char* lines : {"SIZE 4 4 2\nTYPE F F F\n", "SIZE 4 4 4\nTYPE F F X\n"})
+    refuses("a.pcd",
+            std::string("FIELDS x y z\n") + lines + "WIDTH 0\nDATA ascii\n",
+            "unknown type");
+  refuses("a.pcd", pcd_header("ascii", 2) + "1 2 3 4 5\n          \n", "more data was expected");
+}
+
+BOOST_AUTO_TEST_CASE(malformed_ptx_lines_are_refused_with_their_line)
+{
+  refuses("a.ptx", "2\n1\n0 0 0\n", "more data was expected");
+  refuses("a.ptx", "2\n1\n0 0\n", "line 3: expected 3 numbers, the position of the scanner");
+  refuses("a.ptx", "2\n1\n0 0 0 7\n", "line 3: expected the end of the line, found '7'");
+  refuses("a.ptx", "2\n1\n0 0 0\n1 0 inf\n", "line 4: expected 3 numbers, an axis of the scanner");
+  refuses("a.ptx",
+          ptx_header(1, 1, "1 0 0 x\n0 1 0 0\n0 0 1 0\n0 0 0 1\n") + "1 2 3 4\n",
+          "line 7: expected 4 numbers, a row of the matrix");
+  refuses("a.ptx", ptx_header(1, 1, identity) + "1.5 2.5\n", "colours, found 2 columns");
+  refuses("a.ptx", ptx_header(1, 1, identity) + "1 2 3 much\n", "line 11: expected a number");
+  refuses("a.ptx", ptx_header(1, 1, identity) + "      \n", "more data was expected");
+}
+
 BOOST_AUTO_TEST_SUITE_END()
 
 } // namespace test_read_scans

@@ -282,6 +282,12 @@ BOOST_AUTO_TEST_CASE(the_locale_of_the_program_does_not_matter)
   std::setlocale(LC_ALL, old.c_str());
 }
 
+BOOST_AUTO_TEST_CASE(tables_with_tabs_may_have_a_last_tab_or_blanks)
+{
+  const std::vector<Point_3> expected = {Point_3(1, 2, 3), Point_3(4, 5, 6), Point_3(7, 8, 9)};
+  BOOST_TEST((read("a.txt", "x\ty\tz\n1\t2\t3\n4\t5\t6\t\n7 8 9  \n").points() == expected));
+}
+
 BOOST_AUTO_TEST_SUITE_END()
 
 } // namespace test_read_text

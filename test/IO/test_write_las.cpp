@@ -8,12 +8,15 @@
 #include <pcs/IO/Point_writer.h>
 #include <pcs/IO/read_points.h>
 #include <pcs/IO/write_points.h>
+#include <support/exceptions.h>
 
 #include <boost/test/unit_test.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -201,6 +204,55 @@ BOOST_AUTO_TEST_CASE(zero_points_are_written)
 {
   pcs::IO::write_points(path("a.las"), Point_table());
   BOOST_TEST(pcs::IO::read_points(path("a.las")).number_of_points() == 0u);
+}
+
+BOOST_AUTO_TEST_CASE(a_grid_that_is_not_finite_is_refused)
+{
+  const Point_table table(std::vector<Point_3>{Point_3(1, 2, 3)});
+  const double infinity = std::numeric_limits<double>::infinity();
+  Write_options options;
+  options.las_offset = {0, 0, 0};
+  for (const double scale : {0., infinity, std::nan("")}) {
+    options.las_scale = {0.01, 0.01, scale};
+    BOOST_CHECK_EXCEPTION(Point_writer(path("a.las"), table.schema(), options),
+                          Invalid_input,
+                          pcs_test::message_has("las_scale must be finite and not zero"));
+  }
+  options.las_scale = {0.01, 0.01, 0.01};
+  options.las_offset = {0, infinity, 0};
+  BOOST_CHECK_EXCEPTION(Point_writer(path("a.las"), table.schema(), options),
+                        Invalid_input,
+                        pcs_test::message_has("las_offset must be finite"));
+  BOOST_TEST(number_of_files() == 0u);
+}
+
+BOOST_AUTO_TEST_CASE(properties_that_las_cannot_describe_are_refused)
+{
+  Point_table table(std::vector<Point_3>{Point_3(1, 2, 3)});
+  table.add_property<float>(std::string(32, 'a'), {1});
+  pcs::IO::write_points(path("a.las"), table);
+  BOOST_TEST(pcs::IO::read_points(path("a.las")).has_property(std::string(32, 'a')));
+  table.add_property<float>(std::string(33, 'a'), {1});
+  BOOST_CHECK_EXCEPTION(pcs::IO::write_points(path("b.las"), table),
+                        IO_error,
+                        pcs_test::message_has("of more than 32 characters"));
+
+  Point_table many(std::vector<Point_3>{Point_3(1, 2, 3)});
+  for (int i = 0; i < 342; ++i) // a descriptor has 192 bytes, and all of them at most 65535
+    many.add_property<std::uint8_t>("p" + std::to_string(i), {1});
+  BOOST_CHECK_EXCEPTION(pcs::IO::write_points(path("b.las"), many),
+                        IO_error,
+                        pcs_test::message_has("there are too many properties for LAS"));
+
+  Las_file las;
+  las.number_of_extra_bytes = 1;
+  las.add_vlr("LASF_Spec", 4, extra_bytes_descriptor("tree_id", 5)); // four bytes
+  Point_table wrong = read("c.las", las.bytes());
+  wrong.add_property<float>("score", {1, 2, 3});
+  BOOST_CHECK_EXCEPTION(pcs::IO::write_points(path("b.las"), wrong),
+                        IO_error,
+                        pcs_test::message_has("described wrongly, 'score' cannot be added"));
+  BOOST_TEST(!std::filesystem::exists(path("b.las")));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

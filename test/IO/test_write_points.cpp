@@ -7,6 +7,7 @@
 #include <pcs/IO/Point_writer.h>
 #include <pcs/IO/read_points.h>
 #include <pcs/IO/write_points.h>
+#include <support/exceptions.h>
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
@@ -34,6 +35,7 @@ using pcs::IO::Point_table;
 using pcs::IO::Point_writer;
 using pcs::IO::Scalar_type;
 using pcs::IO::Write_options;
+using pcs_test::message_has;
 using Point_3 = Point_table::Point_3;
 
 namespace {
@@ -352,6 +354,59 @@ BOOST_AUTO_TEST_CASE(names_that_a_header_cannot_hold_are_refused)
     BOOST_CHECK_THROW(pcs::IO::write_points(path("a.txt"), table), IO_error);
     BOOST_TEST(!std::filesystem::exists(path("a.txt")));
   }
+}
+
+BOOST_AUTO_TEST_CASE(options_and_remarks_that_a_format_cannot_hold_are_refused)
+{
+  Write_options options;
+  options.text_separator = 'x';
+  BOOST_CHECK_EXCEPTION(pcs::IO::write_points(path("a.txt"), one_point(), options),
+                        Invalid_input,
+                        message_has("text_separator must be a blank, a tab, a comma"));
+  for (const char* line : {"two\nlines", "two\rlines"}) {
+    Point_table table = one_point();
+    table.comments() = {line};
+    BOOST_CHECK_EXCEPTION(pcs::IO::write_points(path("a.ply"), table),
+                          IO_error,
+                          message_has("a PLY comment must be a single line"));
+    table.comments().clear();
+    table.obj_info() = {line};
+    BOOST_CHECK_EXCEPTION(pcs::IO::write_points(path("a.ply"), table),
+                          IO_error,
+                          message_has("a PLY obj_info must be a single line"));
+  }
+  BOOST_TEST(number_of_files() == 0u);
+}
+
+BOOST_AUTO_TEST_CASE(off_keeps_transparency_and_refuses_other_types_of_colours)
+{
+  Point_table table = one_point();
+  for (const char* name : {"red", "green", "blue", "alpha"})
+    table.add_property<std::uint8_t>(name, {static_cast<std::uint8_t>(name[0])});
+  pcs::IO::write_points(path("a.off"), table);
+  const Point_table again = pcs::IO::read_points(path("a.off"));
+  for (const char* name : {"red", "green", "blue", "alpha"})
+    BOOST_TEST(int(again.property<std::uint8_t>(name)[0]) == int(name[0]));
+
+  Point_table wide = one_point();
+  for (const char* name : {"red", "green", "blue"})
+    wide.add_property<std::uint16_t>(name, {1000});
+  BOOST_CHECK_EXCEPTION(
+      pcs::IO::write_points(path("b.off"), wide),
+      IO_error,
+      message_has("OFF stores colours as uint8 or floating point numbers", "red"));
+  BOOST_TEST(!std::filesystem::exists(path("b.off")));
+}
+
+BOOST_AUTO_TEST_CASE(missing_files_and_folders_are_no_inputs)
+{
+  BOOST_CHECK_EXCEPTION(pcs::IO::read_points(path("missing.xyz")),
+                        IO_error,
+                        message_has("missing.xyz", "there is no such file"));
+  std::filesystem::create_directory(path("folder.xyz"));
+  BOOST_CHECK_EXCEPTION(pcs::IO::read_points(path("folder.xyz")),
+                        IO_error,
+                        message_has("folder.xyz", "expected a regular file"));
 }
 
 BOOST_AUTO_TEST_SUITE_END()
