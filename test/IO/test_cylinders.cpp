@@ -263,6 +263,12 @@ BOOST_AUTO_TEST_CASE(a_long_chain_takes_no_stack)
   BOOST_TEST(num_vertices(read_table(text)) == 100001u);
 }
 
+BOOST_AUTO_TEST_CASE(a_negative_id_is_refused_with_the_line)
+{
+  refuses_table("id,sx,sy,sz,ax,ay,az,length,radius,parent\n-3,0,0,0,0,0,1,1,0.1,0\n",
+                "line 2: an id must not be negative, found -3");
+}
+
 BOOST_AUTO_TEST_SUITE_END()
 
 } // namespace test_cylinders

@@ -382,6 +382,13 @@ BOOST_AUTO_TEST_CASE(elements_that_do_not_fit_are_not_written)
   BOOST_TEST(number_of_files() == 2u);
 }
 
+BOOST_AUTO_TEST_CASE(rows_of_faces_begin_with_a_number_of_corners)
+{
+  refuses("a.off",
+          "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\nx 0 1 2\n",
+          "line 6: expected the number of vertices of a face");
+}
+
 BOOST_AUTO_TEST_SUITE_END()
 
 } // namespace test_mesh_faces

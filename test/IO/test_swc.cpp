@@ -5,6 +5,7 @@
 #include "temporary_files.h"
 #include <pcs/IO/read_swc.h>
 #include <pcs/IO/write_swc.h>
+#include <support/exceptions.h>
 #include <support/trees.h>
 
 #include <CGAL/Simple_cartesian.h>
@@ -274,6 +275,24 @@ BOOST_AUTO_TEST_CASE(what_cannot_be_written_leaves_no_file)
       pcs::IO::write_swc<Kernel>(path("no/a.swc"), pcs_test::make_small_tree<Kernel>()),
       pcs::IO_error);
   BOOST_TEST(number_of_files() == 0u);
+}
+
+BOOST_AUTO_TEST_CASE(graphs_that_are_no_trees_are_refused_with_a_reason)
+{
+  const auto refused = [&](const Tree& tree, const char* message) {
+    BOOST_CHECK_EXCEPTION(pcs::IO::write_swc<Kernel>(path("a.swc"), tree),
+                          pcs::Invalid_input,
+                          pcs_test::message_has(message));
+    BOOST_TEST(number_of_files() == 0u);
+  };
+  refused(Tree(), "the tree has no nodes");
+  Tree tree = pcs_test::make_small_tree<Kernel>();
+  const std::size_t n = num_vertices(tree);
+  add_edge(0, n - 1, tree);
+  refused(tree, "has two parents or is its own ancestor");
+  tree = pcs_test::make_small_tree<Kernel>();
+  add_vertex(tree);
+  refused(tree, "1 nodes cannot be reached from the root");
 }
 
 BOOST_AUTO_TEST_SUITE_END()

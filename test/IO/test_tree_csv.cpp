@@ -160,6 +160,12 @@ BOOST_AUTO_TEST_CASE(the_truth_of_the_virtual_scans_loads)
   BOOST_TEST(hits.front() == 350u);
 }
 
+BOOST_AUTO_TEST_CASE(orders_beyond_the_integers_are_refused_with_the_line)
+{
+  refuses_tree(header + "0,-1,0,2147483648,0,0,0,1,1,1,0\n",
+               "line 2: 'order' is out of range: 2147483648");
+}
+
 BOOST_AUTO_TEST_SUITE_END()
 
 } // namespace test_tree_csv

@@ -255,6 +255,16 @@ BOOST_AUTO_TEST_CASE(properties_that_las_cannot_describe_are_refused)
   BOOST_TEST(!std::filesystem::exists(path("b.las")));
 }
 
+BOOST_AUTO_TEST_CASE(points_farther_apart_than_numbers_reach_are_refused)
+{
+  const double far = std::numeric_limits<double>::max();
+  const Point_table table(std::vector<Point_3>{Point_3(far, 0, 0), Point_3(-far, 0, 0)});
+  BOOST_CHECK_EXCEPTION(pcs::IO::write_points(path("a.las"), table),
+                        IO_error,
+                        pcs_test::message_has("the points are too far apart for LAS"));
+  BOOST_TEST(!std::filesystem::exists(path("a.las")));
+}
+
 BOOST_AUTO_TEST_SUITE_END()
 
 } // namespace test_write_las

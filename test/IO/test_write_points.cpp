@@ -409,6 +409,30 @@ BOOST_AUTO_TEST_CASE(missing_files_and_folders_are_no_inputs)
                         message_has("folder.xyz", "expected a regular file"));
 }
 
+BOOST_AUTO_TEST_CASE(a_schema_needs_each_coordinate_and_no_name_twice)
+{
+  pcs::IO::Point_schema schema = one_point().schema();
+  schema.properties.push_back(schema.properties[0]);
+  BOOST_CHECK_EXCEPTION(Point_writer(path("a.ply"), schema),
+                        Invalid_input,
+                        message_has("the schema has the property 'x' twice"));
+  schema = one_point().schema();
+  schema.properties.erase(schema.properties.begin() + 1);
+  BOOST_CHECK_EXCEPTION(Point_writer(path("a.ply"), schema),
+                        Invalid_input,
+                        message_has("the schema has no property 'y'"));
+  BOOST_TEST(number_of_files() == 0u);
+}
+
+BOOST_AUTO_TEST_CASE(a_folder_with_the_name_of_the_output_stays)
+{
+  std::filesystem::create_directory(path("a.ply"));
+  BOOST_CHECK_EXCEPTION(pcs::IO::write_points(path("a.ply"), one_point()),
+                        IO_error,
+                        message_has("a.ply", "is a directory, expected a file name"));
+  BOOST_TEST(std::filesystem::is_directory(path("a.ply")));
+}
+
 BOOST_AUTO_TEST_SUITE_END()
 
 } // namespace test_write_points
