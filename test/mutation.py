@@ -89,6 +89,7 @@ class Includers:
     def __init__(self):
         tests = [p for p in (ROOT / "test").rglob("test_*.cpp") if "compile_fail" not in p.parts]
         self.tests = {path: self.headers_in(path) for path in sorted(tests)}
+        self.texts = {path: path.read_text(encoding="utf-8").lower() for path in tests}
         root = ROOT / "include" / "pcs"
         self.headers = {str(p.relative_to(root)): self.headers_in(p) for p in root.rglob("*.h")}
 
@@ -97,13 +98,13 @@ class Includers:
         return set(re.findall(r"#include <pcs/(.*)>", path.read_text(encoding="utf-8")))
 
     def of(self, header):
-        """The test sources; that with the name of the header is the first."""
+        """The test sources; those that name words of the header's name most often are the first."""
         reached, last = {header}, {header}
         while last:
             found = [path for path, headers in self.tests.items() if headers & last]
             if found:
-                stem = f"test_{pathlib.Path(header).stem}"
-                return sorted(found, key=lambda path: path.stem != stem)
+                words = [w for w in pathlib.Path(header).stem.lower().split("_") if len(w) > 2]
+                return sorted(found, key=lambda path: -sum(map(self.texts[path].count, words)))
             last = {name for name, headers in self.headers.items() if headers & last} - reached
             reached |= last
         return []
