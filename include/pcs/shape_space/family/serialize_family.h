@@ -160,7 +160,11 @@ private:
     branch.reference_edge = b.reference_edge;
     check(i == 0 ? b.parent == none && b.reference_edge == none : b.parent < i,
           "a branch comes before its parent");
-    check(b.number_of_edges > 0 && b.number_of_edges < 1000000, "a branch has no edge");
+    check(b.number_of_edges > 0, "a branch has no edge");
+    // before memory is needed for them
+    check(b.number_of_edges <= m_stored.reference.length.size() &&
+              branch.first_edge <= m_stored.reference.length.size() - b.number_of_edges,
+          "the branches have more edges than the reference");
     if (i > 0) {
       const Orl_layout::Branch& parent = layout.branches[b.parent];
       check(b.reference_edge >= parent.first_edge &&
