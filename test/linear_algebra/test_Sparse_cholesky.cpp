@@ -14,7 +14,9 @@
 #include <Eigen/SparseCore>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <random>
 #include <utility>
@@ -25,6 +27,7 @@ namespace test_Sparse_cholesky {
 namespace {
 
 using Cholesky = pcs::linear_algebra::Sparse_cholesky;
+const std::vector<std::uint32_t> any_order;
 
 /// A sparse, symmetric, diagonally dominant matrix.
 Eigen::MatrixXd random_spd(Eigen::Index n, unsigned seed)
@@ -151,6 +154,51 @@ BOOST_AUTO_TEST_CASE(a_singular_laplacian_is_refused_in_spite_of_rounding)
     Cholesky factor;
     BOOST_TEST(!factor.factorize(lower(a)));
   }
+}
+
+BOOST_AUTO_TEST_CASE(sums_of_rows_keep_every_weight_of_a_chain)
+{
+  // Springs in series with random weights between 1e-24 and 1e24, the first of them at a fixed end.
+  // A force at one node displaces the nodes by its sum over the springs before both nodes.
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    std::mt19937 random(seed);
+    const std::size_t n = 60;
+    std::vector<double> weight(n);
+    for (double& w : weight)
+      w = std::pow(10, 24 * pcs_test::uniform(random));
+    Eigen::MatrixXd a = Eigen::MatrixXd::Zero(Eigen::Index(n), Eigen::Index(n));
+    for (Eigen::Index i = 0; i < Eigen::Index(n); ++i) {
+      a(i, i) = 1; // not read, but part of the pattern
+      if (i > 0)
+        a(i, i - 1) = -weight[std::size_t(i)];
+    }
+    std::vector<double> row_sums(n, 0);
+    row_sums[0] = weight[0];
+    Cholesky factor;
+    BOOST_REQUIRE(factor.factorize(lower(a), any_order, row_sums));
+    for (const std::size_t loaded : {std::size_t(0), n / 2, n - 1}) {
+      std::vector<Eigen::Matrix<double, 1, 1>> x(n, Eigen::Matrix<double, 1, 1>::Zero()), work;
+      x[loaded][0] = 1;
+      factor.solve(x, work);
+      double expected = 0;
+      for (std::size_t i = 0; i < n; ++i) {
+        if (i <= loaded)
+          expected += 1 / weight[i];
+        BOOST_REQUIRE(std::abs(x[i][0] - expected) < 1e-13 * expected);
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(rows_that_all_sum_to_zero_are_singular)
+{
+  Eigen::MatrixXd a = grid_laplacian(12);
+  a(0, 0) -= 1;
+  std::vector<double> row_sums(144, 0);
+  Cholesky factor;
+  BOOST_TEST(!factor.factorize(lower(a), any_order, row_sums));
+  row_sums[77] = 1e-200;
+  BOOST_TEST(factor.factorize(lower(a), any_order, row_sums));
 }
 
 BOOST_AUTO_TEST_CASE(the_factor_works_again_after_a_refusal)
@@ -294,25 +342,39 @@ BOOST_AUTO_TEST_CASE(all_kernels_give_the_same_bits)
 {
   using namespace pcs::linear_algebra;
   std::mt19937 random(9);
-  for (std::size_t width = 1; width <= 23; ++width)
+  for (std::size_t turn = 0; turn < 2 * 23; ++turn)
     for (const std::size_t below : {0u, 1u, 3u, 8u, 21u, 40u}) {
-      const std::size_t height = width + below;
-      const Eigen::MatrixXd spd = random_spd(static_cast<Eigen::Index>(height), unsigned(width));
+      const std::size_t width = 1 + turn / 2, height = width + below;
+      const bool has_row_sums = turn % 2 == 1;
+      Eigen::MatrixXd spd = random_spd(static_cast<Eigen::Index>(height), unsigned(width));
+      Eigen::VectorXd diagonal_or_sums = spd.diagonal();
+      if (has_row_sums) {
+        spd = (-spd.cwiseAbs()).eval();
+        spd.diagonal().setZero();
+        diagonal_or_sums.setConstant(0.1);
+        spd.diagonal() = diagonal_or_sums - spd.rowwise().sum();
+      }
       const Eigen::MatrixXd panel = spd.leftCols(static_cast<Eigen::Index>(width));
       const auto run = [&](Factorize_front kernel, Eigen::MatrixXd& p, Eigen::MatrixXd& rest) {
         p = panel;
         rest = spd.bottomRightCorner(static_cast<Eigen::Index>(below),
                                      static_cast<Eigen::Index>(below));
         Eigen::MatrixXd scaled = p;
-        Eigen::VectorXd diagonal = spd.diagonal();
+        Eigen::VectorXd diagonal = diagonal_or_sums;
         const bool is_regular = kernel({{p.data(), height},
                                         {scaled.data(), height},
                                         height,
                                         width,
                                         {rest.data(), below},
                                         diagonal.data(),
-                                        diagonal.data() + width});
-        rest.diagonal() = diagonal.tail(rest.rows());
+                                        diagonal.data() + width,
+                                        has_row_sums});
+        if (has_row_sums) { // the sums of the rest exclude the columns of the panel
+          const Eigen::MatrixXd strict = rest.triangularView<Eigen::StrictlyLower>();
+          rest.diagonal() = diagonal.tail(rest.rows()) - strict.rowwise().sum() -
+                            strict.colwise().sum().transpose();
+        } else
+          rest.diagonal() = diagonal.tail(rest.rows());
         return is_regular;
       };
       Eigen::MatrixXd p, rest, q, other;

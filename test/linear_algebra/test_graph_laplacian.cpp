@@ -7,6 +7,8 @@
 
 #include <boost/test/unit_test.hpp>
 
+#include <cmath>
+
 namespace test_graph_laplacian {
 
 namespace {
@@ -110,6 +112,12 @@ BOOST_AUTO_TEST_CASE(prescribed_nodes_are_eliminated_and_several_graphs_add_up)
                                node_of_row[static_cast<std::size_t>(s)]) +
                          (r == s ? extra[static_cast<std::size_t>(r)] : 0);
     BOOST_TEST(error(found, expected) < 1e-12);
+    const std::vector<double> sums =
+        pcs::linear_algebra::free_row_sums<Graph>({&ga, &gb, &gc}, row_of_node, node_of_row, extra);
+    const Eigen::VectorXd expected_sums = expected.rowwise().sum();
+    BOOST_REQUIRE(sums.size() == node_of_row.size());
+    for (Eigen::Index r = 0; r < m; ++r)
+      BOOST_TEST(std::abs(sums[std::size_t(r)] - expected_sums[r]) < 1e-12);
   }
 }
 

@@ -35,15 +35,27 @@ class Sparse_cholesky
 public:
   using Matrix = Cholesky_pattern::Matrix;
 
-  /// Factorises `a`, of which only the lower triangle is read. Rows are eliminated in the order of
-  /// `rank` unless it is empty. Returns `false` if `a` is not positive definite.
-  bool factorize(const Matrix& a, const std::vector<std::uint32_t>& rank = {})
+  /*!
+    Factorises `a`, of which only the lower triangle is read. Rows are eliminated in the order of
+    `rank` unless it is empty. Returns `false` if `a` is not positive definite.
+
+    \param row_sums the sum of each row of a Laplacian with added diagonal, at least 0. If given, no
+        entry off the diagonal may be positive, and the diagonal is not read. The elimination then
+        adds numbers of equal signs only (Grassmann, Taksar, Heyman 1985; Alfa, Xue, Ye 2002), so
+        that every entry of the factor is accurate, whatever the ratio of the weights. Sums of
+        entries of `a` would lose the small ones.
+  */
+  bool factorize(const Matrix& a,
+                 const std::vector<std::uint32_t>& rank = {},
+                 const std::vector<double>& row_sums = {})
   {
-    return factorize(a, std::make_shared<const Cholesky_pattern>(a, rank));
+    return factorize(a, std::make_shared<const Cholesky_pattern>(a, rank), row_sums);
   }
 
   /// Factorises a matrix with the sparsity pattern of `pattern`.
-  bool factorize(const Matrix& a, std::shared_ptr<const Cholesky_pattern> pattern)
+  bool factorize(const Matrix& a,
+                 std::shared_ptr<const Cholesky_pattern> pattern,
+                 const std::vector<double>& row_sums = {})
   {
     m_pattern = std::move(pattern);
     const Cholesky_pattern& p = *m_pattern;
@@ -58,7 +70,9 @@ public:
           if (i.row() == column)
             diagonal[p.new_of_old[static_cast<std::size_t>(column)]] = i.value();
         }
-    return factorize_panels(diagonal);
+    for (std::size_t i = 0; i < row_sums.size(); ++i)
+      diagonal[p.new_of_old[i]] = row_sums[i];
+    return factorize_panels(diagonal, !row_sums.empty());
   }
 
   /// The pattern of the last matrix; null before the first factorisation.
@@ -127,7 +141,8 @@ private:
   };
 
   /// Factorises panel by panel. A stack stores the updates of a panel until its parent is reached.
-  bool factorize_panels(std::vector<double>& diagonal)
+  /// \param has_row_sums whether `diagonal` has the sums of the rows
+  bool factorize_panels(std::vector<double>& diagonal, bool has_row_sums)
   {
     const Cholesky_pattern& p = *m_pattern;
     const Factorize_front factorize_front = choose_factorize_front();
@@ -154,7 +169,8 @@ private:
                             width,
                             rest,
                             diagonal.data() + p.first[s],
-                            diagonal_below.data()}))
+                            diagonal_below.data(),
+                            has_row_sums}))
         return false;
       for (std::size_t r = 0; r < below; ++r)
         diagonal[row[r]] = diagonal_below[r];

@@ -27,8 +27,7 @@ struct Dense_columns
   A panel of `width` columns and `height` rows during a factorisation.
 
   The diagonal is stored separately. If updates were first added up, small values would be lost
-  against large ones. Separate subtractions keep the pivots of Laplacians positive for any ratio of
-  the weights.
+  against large ones.
 */
 struct Front
 {
@@ -42,6 +41,8 @@ struct Front
   Dense_columns rest;
   /// Current values for the panel's own rows, and for the rows below.
   double *diagonal, *diagonal_below;
+  /// Whether `diagonal` and `diagonal_below` are sums of rows, see `Sparse_cholesky::factorize()`.
+  bool has_row_sums;
 };
 
 namespace internal {
@@ -125,6 +126,18 @@ PCS_ALWAYS_INLINE void subtract_strip(const Dense_product& l,
     }
 }
 
+/// Returns the sum of some entries. The order of summation is that of four lanes.
+PCS_ALWAYS_INLINE double sum_of(const double* begin, const double* end)
+{
+  double sum[4] = {0, 0, 0, 0};
+  for (; begin + 4 <= end; begin += 4)
+    for (std::size_t k = 0; k < 4; ++k)
+      sum[k] += begin[k];
+  for (std::size_t k = 0; begin < end; ++begin, ++k)
+    sum[k] += *begin;
+  return (sum[0] + sum[2]) + (sum[1] + sum[3]);
+}
+
 /// Factorises a panel in place and subtracts its update from the rows below. Returns `false` if a
 /// pivot is not positive.
 template <class Arithmetic>
@@ -160,17 +173,26 @@ PCS_ALWAYS_INLINE bool factorize_front(const Front& front)
     for (std::size_t j = begin; j < end; ++j) {
       subtract_strip<Arithmetic, 1>(own, j, height, j, j - begin, panel.at(j, j), panel.stride);
       double *column = panel.at(0, j), *unscaled = scaled.at(0, j);
-      const double pivot = column[j] = front.diagonal[j];
+      const double own_value = front.diagonal[j];
+      const double pivot = column[j] =
+          front.has_row_sums ? own_value - sum_of(column + j + 1, column + height) : own_value;
       if (!(pivot > 0))
         return false;
       for (std::size_t i = j + 1; i < height; ++i) {
         unscaled[i] = column[i];
         column[i] /= pivot;
       }
-      for (std::size_t i = j + 1; i < width; ++i)
-        Arithmetic::subtract_product(column[i], unscaled[i], front.diagonal[i]);
-      for (std::size_t i = width; i < height; ++i)
-        Arithmetic::subtract_product(column[i], unscaled[i], front.diagonal_below[i - width]);
+      if (front.has_row_sums) {
+        for (std::size_t i = j + 1; i < width; ++i)
+          Arithmetic::subtract_product(column[i], own_value, front.diagonal[i]);
+        for (std::size_t i = width; i < height; ++i)
+          Arithmetic::subtract_product(column[i], own_value, front.diagonal_below[i - width]);
+      } else {
+        for (std::size_t i = j + 1; i < width; ++i)
+          Arithmetic::subtract_product(column[i], unscaled[i], front.diagonal[i]);
+        for (std::size_t i = width; i < height; ++i)
+          Arithmetic::subtract_product(column[i], unscaled[i], front.diagonal_below[i - width]);
+      }
     }
   }
   subtract(0, height - width, width, width, rest);

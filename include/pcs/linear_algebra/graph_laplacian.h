@@ -69,6 +69,28 @@ Eigen::SparseMatrix<double> free_laplacian(const std::vector<const Graph*>& grap
   return a;
 }
 
+/*!
+  Returns the sums of the rows of `free_laplacian()`: `extra` and the weights of the edges to
+  eliminated nodes. Sums of its entries would lose these where other weights are much larger.
+*/
+template <class Graph>
+std::vector<double> free_row_sums(const std::vector<const Graph*>& graphs,
+                                  const std::vector<std::uint32_t>& row_of_node,
+                                  const std::vector<std::uint32_t>& node_of_row,
+                                  const std::vector<double>& extra)
+{
+  std::vector<double> sums(node_of_row.size(), 0);
+  for (std::size_t row = 0; row < sums.size(); ++row) {
+    const std::uint32_t i = node_of_row[row];
+    sums[row] = extra.empty() ? 0 : extra[row];
+    for (const Graph* g : graphs)
+      for (std::size_t e = g->first[i]; e < g->first[i + 1]; ++e)
+        if (row_of_node[g->neighbor[e]] == not_free)
+          sums[row] += g->weight[e];
+  }
+  return sums;
+}
+
 } // namespace linear_algebra
 } // namespace pcs
 

@@ -54,6 +54,10 @@ public:
                               const std::vector<double>& extra) {
       return linear_algebra::free_laplacian(graphs, m_rows.row_of_node, m_rows.node_of_row, extra);
     };
+    const auto row_sums = [&](std::vector<const Weighted_graph*> graphs,
+                              const std::vector<double>& extra) {
+      return linear_algebra::free_row_sums(graphs, m_rows.row_of_node, m_rows.node_of_row, extra);
+    };
     const Weighted_graph* surface = &network.surface;
     bool field_ok = false, smoothing_ok = false, position_ok = true;
     const Eigen::SparseMatrix<double> of_field = assemble({surface}, soft);
@@ -67,11 +71,16 @@ public:
         [&] {
           if (m_has_links)
             position_ok = m_link.factorize(assemble({surface, &network.links}, soft),
-                                           rank_of_rows(network.rank, m_rows));
+                                           rank_of_rows(network.rank, m_rows),
+                                           row_sums({surface, &network.links}, soft));
         });
     pcs::internal::invoke_both<ConcurrencyTag>(
-        [&] { field_ok = m_field.factorize(of_field, pattern); },
-        [&] { smoothing_ok = m_smoothing.factorize(assemble({surface}, smoothing), pattern); });
+        [&] { field_ok = m_field.factorize(of_field, pattern, row_sums({surface}, soft)); },
+        [&] {
+          smoothing_ok = m_smoothing.factorize(assemble({surface}, smoothing),
+                                               pattern,
+                                               row_sums({surface}, smoothing));
+        });
     return field_ok && smoothing_ok && position_ok;
   }
 
