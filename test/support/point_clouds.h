@@ -50,6 +50,18 @@ inline Points random_points(std::size_t n, unsigned seed)
   return points;
 }
 
+/// Ten groups of `size` points each in the corners of squares with sides of length `distance`. The
+/// points of a group lie in a cube with sides of length 2.
+inline Points small_groups(int size, double distance, unsigned seed)
+{
+  std::mt19937 random(seed);
+  Points points;
+  for (int group = 0; group < 10; ++group)
+    for (int i = 0; i < size; ++i)
+      points.push_back(distance * Vec3(group % 3, group / 3, 0) + random_vector(random));
+  return points;
+}
+
 /// `(nx + 1) (ny + 1)` points in the plane z = 0, x the slow index.
 inline Points plate(int nx, int ny, double spacing)
 {

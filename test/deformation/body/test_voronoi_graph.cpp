@@ -80,6 +80,25 @@ double imbalance(const Points& points,
   return std::sqrt(sum / count);
 }
 
+/// Checks the weights of both half-edges of all edges, and their mean.
+void check_halves(const Points& points)
+{
+  const Weighted_graph graph = weights(points);
+  double sum = 0;
+  for (std::uint32_t i = 0; i < graph.size(); ++i)
+    for (std::size_t e = graph.first[i]; e < graph.first[i + 1]; ++e) {
+      const std::uint32_t j = graph.neighbor[e];
+      BOOST_TEST_REQUIRE(j != i);
+      const auto back = std::lower_bound(graph.begin(j), graph.end(j), i);
+      BOOST_TEST_REQUIRE((back != graph.end(j) && *back == i));
+      BOOST_TEST_REQUIRE(graph.weight[std::size_t(back - graph.neighbor.data())] ==
+                         graph.weight[e]);
+      BOOST_TEST_REQUIRE((graph.weight[e] > 0 && std::isfinite(graph.weight[e])));
+      sum += graph.weight[e];
+    }
+  BOOST_TEST(std::abs(sum / double(graph.size()) - pcs::deformation::mean_degree) < 1e-9);
+}
+
 } // namespace
 
 BOOST_AUTO_TEST_SUITE(voronoi_graph)
@@ -146,21 +165,14 @@ BOOST_AUTO_TEST_CASE(components_stay)
 
 BOOST_AUTO_TEST_CASE(halves_of_an_edge_agree)
 {
-  const Points points = random_sheet(20);
-  const Weighted_graph graph = weights(points);
-  double sum = 0;
-  for (std::uint32_t i = 0; i < graph.size(); ++i)
-    for (std::size_t e = graph.first[i]; e < graph.first[i + 1]; ++e) {
-      const std::uint32_t j = graph.neighbor[e];
-      BOOST_TEST_REQUIRE(j != i);
-      const auto back = std::lower_bound(graph.begin(j), graph.end(j), i);
-      BOOST_TEST_REQUIRE((back != graph.end(j) && *back == i));
-      BOOST_TEST_REQUIRE(graph.weight[std::size_t(back - graph.neighbor.data())] ==
-                         graph.weight[e]);
-      BOOST_TEST_REQUIRE((graph.weight[e] > 0 && std::isfinite(graph.weight[e])));
-      sum += graph.weight[e];
-    }
-  BOOST_TEST(std::abs(sum / double(graph.size()) - pcs::deformation::mean_degree) < 1e-9);
+  check_halves(random_sheet(20));
+}
+
+BOOST_AUTO_TEST_CASE(halves_of_an_edge_agree_in_long_and_thin_cells)
+{
+  for (unsigned seed = 0; seed < 20; ++seed)
+    for (const int size : {2, 3, 4, 6})
+      check_halves(pcs_test::small_groups(size, 1e6, seed));
 }
 
 BOOST_AUTO_TEST_CASE(gaps_are_not_bridged)

@@ -141,12 +141,14 @@ public:
       if (m_candidates[c].squared < m_cell.reach() * m_cell.reach() &&
           m_candidates[c].flat.squaredNorm() > 0)
         m_cell.cut(m_candidates[c].flat, static_cast<std::uint32_t>(c));
-    m_cell.for_each_side([&](std::uint32_t c) { return m_candidates[c].flat; },
-                         [&](std::uint32_t c, const Vec2& p, double length) {
-                           const double weight = length / p.norm() - negligible_weight;
-                           if (weight > 0)
-                             out.push_back({m_candidates[c].index, static_cast<float>(weight)});
-                         });
+    const std::size_t first = out.size();
+    m_cell.for_each_side(
+        [&](std::uint32_t c) { return m_candidates[c].flat; },
+        [&](std::uint32_t c, const Vec2& p, double length) {
+          const double weight = length / p.norm() - negligible_weight;
+          if (weight > 0)
+            add_side({m_candidates[c].index, static_cast<float>(weight)}, first, out);
+        });
     return m_cell.radius() > loose_radius;
   }
 
@@ -172,6 +174,21 @@ private:
     const double squared = offset.squaredNorm();
     if (squared < longest_edge * longest_edge)
       m_candidates.push_back({offset, squared, Vec2::Zero(), j});
+  }
+
+  /// Adds a side to the star that begins at `first`. A neighbour may have two sides, as it may be a
+  /// candidate several times, and rounding in long and thin cells lets each of them cut. With two
+  /// entries in one row, the matrices would not be symmetric.
+  static void add_side(const Voronoi_stars::Side& side,
+                       std::size_t first,
+                       std::vector<Voronoi_stars::Side>& out)
+  {
+    for (std::size_t e = first; e < out.size(); ++e)
+      if (out[e].neighbor == side.neighbor) {
+        out[e].weight += side.weight;
+        return;
+      }
+    out.push_back(side);
   }
 
   /// Lays the candidates into the tangent plane without shortening the edges to them, across
