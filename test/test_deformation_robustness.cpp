@@ -184,6 +184,44 @@ BOOST_AUTO_TEST_CASE(a_far_outlier_does_not_spoil_the_rest)
   }
 }
 
+BOOST_AUTO_TEST_CASE(small_groups_far_apart_stay_whole)
+{
+  // Fewer points than neighbours: all groups are connected, by links up to 1e9 times as long.
+  for (const int size : {3, 4, 6})
+    for (const double distance : {1e4, 1e6, 1e9})
+      for (const Vec3& origin : {Vec3(0, 0, 0), Vec3(1e8, -1e8, 1e8)})
+        for (unsigned seed = 0; seed < 3; ++seed)
+          BOOST_TEST_CONTEXT("groups of " << size << ", distance " << distance << ", origin "
+                                          << origin.transpose() << ", seed " << seed)
+          {
+            Points points = pcs_test::small_groups(size, distance, seed);
+            for (Vec3& p : points)
+              p += origin;
+            const std::size_t n = points.size(), group = static_cast<std::size_t>(size);
+            Handles handles(2);
+            for (std::size_t i = 0; i < group; ++i) {
+              handles[0].indices.push_back(i);
+              handles[1].indices.push_back(n - 1 - i);
+            }
+            handles[1].transformation = pcs::rotation(Vec3(1, 2, 3), 0.5, origin);
+            const auto bent = deform(points, handles);
+            BOOST_TEST(bent.report.status == Status::converged);
+            BOOST_TEST(bent.report.number_of_components == 1u);
+            const double rounding = 1e-15 * (pcs_test::diagonal(points) + origin.norm());
+            for (std::size_t i = 0; i < n; ++i)
+              for (std::size_t j = i / group * group; j < i; ++j) {
+                const double length = (points[j] - points[i]).norm();
+                const double change = (bent.points[j] - bent.points[i]).norm() - length;
+                BOOST_TEST(std::abs(change) < 0.1 * length + 10 * rounding);
+              }
+            handles[0].transformation = handles[1].transformation;
+            const auto moved = deform(points, handles);
+            for (std::size_t i = 0; i < n; ++i)
+              BOOST_TEST((moved.points[i] - handles[0].transformation(points[i])).norm() <
+                         1e-14 * distance * distance + 10 * rounding);
+          }
+}
+
 BOOST_AUTO_TEST_CASE(points_that_are_not_finite_are_named)
 {
   Bar_edit edit;

@@ -38,26 +38,73 @@ inline void sort_eight(double* v)
 
 } // namespace internal
 
+namespace internal {
+
+/// Squared lengths of the first 64 links of a point. Those before the upper median are not longer.
+struct Link_squares
+{
+  std::array<double, 64> square;
+  std::size_t count = 0;
+
+  Link_squares(const std::vector<Vec3>& points, const Proximity_graph& graph, std::size_t i)
+    : count(std::min(square.size(), graph.degree(i)))
+  {
+    for (std::size_t e = 0; e < count; ++e)
+      square[e] = (points[graph.begin(i)[e]] - points[i]).squaredNorm();
+    if (count <= 8) {
+      for (std::size_t e = count; e < 8; ++e)
+        square[e] = std::numeric_limits<double>::infinity();
+      sort_eight(square.data());
+    } else
+      std::nth_element(begin(),
+                       begin() + static_cast<std::ptrdiff_t>(count / 2),
+                       begin() + static_cast<std::ptrdiff_t>(count));
+  }
+
+  double* begin() { return square.data(); }
+  double median() const { return square[count / 2]; }
+};
+
+} // namespace internal
+
 /// Returns the upper median of the lengths of the first 64 links of point `i`, 0 without links. It
 /// is robust against a single outlier. [L]
 inline double
 median_link(const std::vector<Vec3>& points, const Proximity_graph& graph, std::size_t i)
 {
-  std::array<double, 64> squares;
-  const std::size_t count = std::min(squares.size(), graph.degree(i));
-  if (count == 0)
+  if (graph.degree(i) == 0)
     return 0;
-  for (std::size_t e = 0; e < count; ++e)
-    squares[e] = (points[graph.begin(i)[e]] - points[i]).squaredNorm();
-  if (count <= 8) {
-    for (std::size_t e = count; e < 8; ++e)
-      squares[e] = std::numeric_limits<double>::infinity();
-    internal::sort_eight(squares.data());
-  } else
-    std::nth_element(squares.begin(),
-                     squares.begin() + static_cast<std::ptrdiff_t>(count / 2),
-                     squares.begin() + static_cast<std::ptrdiff_t>(count));
-  return std::sqrt(squares[count / 2]);
+  return std::sqrt(internal::Link_squares(points, graph, i).median());
+}
+
+/// Links of a group of points that are shorter than this fraction of a median link lead to points
+/// of the same group, and longer links to other groups. [-]
+constexpr double widest_group = 1e-3;
+/// Smallest spacing in a group. Points that nearly coincide, as in overlapping scans, are no
+/// structure of their own. [median links]
+constexpr double least_group_spacing = 1e-6;
+
+/*!
+  Returns `median_link()` or, for a point of a small group, the median of its links in the group. A
+  group has at least three points, and so few that most of their links lead to other groups, which
+  are far away. The median of all links of its points would be the distance of another group for
+  some points, and the size of the group for others. [L]
+*/
+inline double
+group_spacing(const std::vector<Vec3>& points, const Proximity_graph& graph, std::size_t i)
+{
+  if (graph.degree(i) == 0)
+    return 0;
+  internal::Link_squares links(points, graph, i);
+  const double median = links.median(), widest = widest_group * widest_group * median;
+  double* const middle = links.begin() + links.count / 2;
+  double* const end = std::partition(links.begin(), middle, [&](double s) { return s < widest; });
+  const auto count = end - links.begin();
+  if (count < 2)
+    return std::sqrt(median);
+  std::nth_element(links.begin(), links.begin() + count / 2, end);
+  return std::sqrt(
+      std::max(links.begin()[count / 2], least_group_spacing * least_group_spacing * median));
 }
 
 } // namespace neighborhood

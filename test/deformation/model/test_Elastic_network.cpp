@@ -46,6 +46,28 @@ BOOST_AUTO_TEST_CASE(two_points_that_nearly_coincide_do_not_outweigh_all_others)
     BOOST_REQUIRE((std::isfinite(w) && w > 0 && w < 30));
 }
 
+BOOST_AUTO_TEST_CASE(the_spacing_of_small_groups_is_that_of_their_points)
+{
+  for (const int size : {3, 4, 5, 6})
+    for (const double distance : {1e5, 1e9}) {
+      const auto network = pcs_test::network_of(pcs_test::small_groups(size, distance, 1));
+      for (std::size_t i = 0; i < network.size(); ++i) {
+        const double spacing = pcs::deformation::local_spacing(network.rest, network.surface, i);
+        BOOST_TEST(spacing < std::max(3.5, 1e-5 * distance));
+        BOOST_TEST(spacing > 1e-3);
+      }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(one_point_that_nearly_coincides_with_another_has_the_spacing_of_all)
+{
+  auto points = pcs_test::plate(10, 10, 1);
+  points.push_back(points[50] + pcs_test::Vec3(1e-7, 0, 0));
+  const auto network = pcs_test::network_of(points);
+  for (std::size_t i = 0; i < network.size(); ++i)
+    BOOST_TEST(pcs::deformation::local_spacing(network.rest, network.surface, i) > 0.9);
+}
+
 BOOST_AUTO_TEST_CASE(a_graph_without_edges_has_no_weights)
 {
   pcs::deformation::Weighted_graph graph;

@@ -65,7 +65,7 @@ inline double local_spacing(const std::vector<Vec3>& rest,
                             const neighborhood::Proximity_graph& graph,
                             std::size_t i)
 {
-  return neighborhood::median_link(rest, graph, i);
+  return neighborhood::group_spacing(rest, graph, i);
 }
 
 /// Sets `area` from the spacings; \p component holds the component of each node.
