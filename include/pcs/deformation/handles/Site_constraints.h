@@ -10,8 +10,10 @@
 #include <pcs/deformation/handles/Handle_set.h>
 #include <pcs/deformation/model/Harmonic_system.h>
 #include <pcs/deformation/model/Point_blocks.h>
+#include <pcs/internal/lanes.h>
 #include <pcs/internal/parallel.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <set>
@@ -155,19 +157,36 @@ private:
   {
     m_is_blended.resize(body.rest_points.number_of_blocks());
     m_holder.resize(m_is_blended.size());
+    if (body.place_of_site.empty())
+      mark_blocks<ConcurrencyTag>(body.number_of_points(),
+                                  [&](std::size_t place) { return m_of_site[place]; });
+    else
+      mark_blocks<ConcurrencyTag>(body.number_of_points(), [&](std::size_t place) {
+        return m_of_site[body.site_of_place[place]];
+      });
+  }
+
+  /// \param of_place the class of the site of a point
+  template <class ConcurrencyTag, class OfPlace>
+  void mark_blocks(std::size_t number_of_points, const OfPlace& of_place)
+  {
     pcs::internal::for_each_index<ConcurrencyTag>(m_is_blended.size(), [&](std::size_t block) {
+      const std::size_t begin = block * lanes, count = std::min(lanes, number_of_points - begin);
+      const Node_constraint first = of_place(begin);
       unsigned bits = 0;
-      const std::size_t begin = block * lanes;
-      m_holder[block] = m_of_site[body.site_of_place[begin]];
-      for (std::size_t l = 0; l < lanes && begin + l < body.number_of_points(); ++l) {
-        const Node_constraint h = m_of_site[body.site_of_place[begin + l]];
-        if (h == free_node)
-          bits |= 1u << l;
-        if (h != m_holder[block])
-          m_holder[block] = mixed_block;
-      }
-      if (m_holder[block] < 0)
-        m_holder[block] = m_holder[block] == unreached_node ? still_block : mixed_block;
+      bool is_alike = true;
+      const auto mark = [&](std::size_t l) {
+        const Node_constraint h = of_place(begin + l);
+        bits |= (h == free_node ? 1u : 0u) << l;
+        is_alike &= h == first;
+      };
+      if (count == lanes)
+        pcs::internal::unroll<lanes>([&](auto l) { mark(l); });
+      else
+        for (std::size_t l = 0; l < count; ++l)
+          mark(l);
+      const bool is_held = is_alike && first >= 0, is_still = is_alike && first == unreached_node;
+      m_holder[block] = is_held ? first : is_still ? still_block : mixed_block;
       m_is_blended[block] = static_cast<std::uint8_t>(bits);
     });
   }

@@ -18,7 +18,8 @@ namespace deformation {
 
 /*!
   Assigns nodes of components without constrained nodes to the handles that lie in the regions of
-  these nodes. Otherwise the matrices would be singular. O(nodes + finer nodes).
+  these nodes. Otherwise the matrices would be singular. O(nodes), and O(finer nodes) if there are
+  such components.
 
   \param component_of `component_of(node)`
   \param node_of_finer the node in whose region each finer node lies, or `no_sample`
@@ -36,6 +37,11 @@ void anchor_free_components(const ComponentOf& component_of,
   for (std::size_t node = 0; node < of_node.size(); ++node)
     if (of_node[node] >= 0)
       held.insert(component_of(node));
+  bool has_free_components = false;
+  for (std::size_t node = 0; node < of_node.size() && !has_free_components; ++node)
+    has_free_components = of_node[node] == free_node && held.count(component_of(node)) == 0;
+  if (!has_free_components)
+    return;
   for (std::size_t i = 0; i < node_of_finer.size(); ++i) {
     const std::uint32_t node = node_of_finer[i];
     if (node != no_sample && of_node[node] == free_node && handle_of_finer(i) >= 0 &&

@@ -58,12 +58,19 @@ void anchor_samples(const Sampled_body<ConcurrencyTag>& body,
 template <class ConcurrencyTag, class HandleOfSite>
 void add_border_nodes(const Sampled_body<ConcurrencyTag>& body,
                       const Border_finder& finder,
+                      const Handle_set& handles,
                       const HandleOfSite& handle_of_site,
                       Body_constraints& result)
 {
-  const auto is_held = [&](std::size_t site) { return handle_of_site(site) >= 0; };
   const auto position = [&](std::size_t site) { return body.rest_of_site(site); };
-  result.border = finder.find<ConcurrencyTag>(body.site_graph, is_held);
+  if (handles.has_soft_handles())
+    result.border = finder.find<ConcurrencyTag>(body.site_graph, [&](std::size_t site) {
+      return handle_of_site(site) >= 0;
+    });
+  else // the same, without a look at each handle
+    result.border = finder.find<ConcurrencyTag>(body.site_graph, [&](std::size_t site) {
+      return handles.of_site(site) != free_node;
+    });
   result.network =
       add_boundary_nodes(Boundary_input<HandleOfSite, decltype(position)>{body.network,
                                                                           body.weight_unit,
@@ -91,7 +98,7 @@ Body_constraints constrain_body(const Sampled_body<ConcurrencyTag>& body,
   internal::anchor_samples(body, handle_of_site, result.of_samples);
   result.has_network = true;
   if (body.is_sampled)
-    internal::add_border_nodes(body, border_finder, handle_of_site, result);
+    internal::add_border_nodes(body, border_finder, handles, handle_of_site, result);
   else {
     result.has_network = straighten_borders(body.network, result.of_nodes, result.network);
     for (std::uint32_t& source : result.network.source)

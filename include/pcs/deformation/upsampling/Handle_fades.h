@@ -13,6 +13,8 @@
 #include <pcs/deformation/upsampling/blend_block.h>
 #include <pcs/deformation/upsampling/border_fade.h>
 
+#include <boost/sort/spreadsort/integer_sort.hpp>
+
 #include <Eigen/Core>
 
 #include <algorithm>
@@ -48,23 +50,7 @@ public:
                               spacing,
                               handle_of_site,
                               [&](std::size_t site) { return body.rest_of_site(site); });
-    m_of_blocks.clear();
-    m_first.assign(1, 0);
-    std::vector<std::uint32_t> first_of_site(body.number_of_sites(), none);
-    for (std::size_t f = m_of_sites.size(); f-- > 0;)
-      first_of_site[m_of_sites[f].site] = static_cast<std::uint32_t>(f);
-    for (std::size_t block = 0; block < body.rest_points.number_of_blocks(); ++block) {
-      for (std::size_t place = block * lanes;
-           place < std::min((block + 1) * lanes, body.number_of_points());
-           ++place) {
-        const std::uint32_t site = body.site_of_place[place];
-        for (std::size_t f = first_of_site[site];
-             f < m_of_sites.size() && m_of_sites[f].site == site;
-             ++f)
-          add(m_of_sites[f], place % lanes);
-      }
-      m_first.push_back(static_cast<std::uint32_t>(m_of_blocks.size()));
-    }
+    fill_blocks(body, fades_of_places(body));
   }
 
   /// The weights by site, increasing by site, then by handle.
@@ -106,6 +92,47 @@ public:
   }
 
 private:
+  /// Returns the upsampling index of each point with a weight, and the index of the weight, in
+  /// increasing order; the upsampling index is in the upper half of the bits.
+  template <class ConcurrencyTag>
+  std::vector<std::uint64_t> fades_of_places(const Sampled_body<ConcurrencyTag>& body) const
+  {
+    std::vector<std::uint64_t> result;
+    result.reserve(m_of_sites.size());
+    if (body.number_of_sites() == body.number_of_points()) {
+      for (std::size_t f = 0; f < m_of_sites.size(); ++f)
+        result.push_back(std::uint64_t(body.first_place(m_of_sites[f].site)) << 32 | f);
+      if (!body.place_of_site.empty())
+        boost::sort::spreadsort::integer_sort(result.begin(), result.end());
+      return result;
+    }
+    std::vector<std::uint32_t> first_of_site(body.number_of_sites(), none);
+    for (std::size_t f = m_of_sites.size(); f-- > 0;)
+      first_of_site[m_of_sites[f].site] = static_cast<std::uint32_t>(f);
+    for (std::size_t place = 0; place < body.number_of_points(); ++place) {
+      const std::uint32_t site = body.site_of_place[place];
+      for (std::size_t f = first_of_site[site]; f < m_of_sites.size() && m_of_sites[f].site == site;
+           ++f)
+        result.push_back(std::uint64_t(place) << 32 | f);
+    }
+    return result;
+  }
+
+  /// \param of_places see `fades_of_places()`
+  template <class ConcurrencyTag>
+  void fill_blocks(const Sampled_body<ConcurrencyTag>& body,
+                   const std::vector<std::uint64_t>& of_places)
+  {
+    m_of_blocks.clear();
+    m_first.assign(1, 0);
+    auto next = of_places.begin();
+    for (std::size_t block = 0; block < body.rest_points.number_of_blocks(); ++block) {
+      for (; next != of_places.end() && (*next >> 32) < (block + 1) * lanes; ++next)
+        add(m_of_sites[static_cast<std::uint32_t>(*next)], (*next >> 32) % lanes);
+      m_first.push_back(static_cast<std::uint32_t>(m_of_blocks.size()));
+    }
+  }
+
   /// Inserts a weight in the order of the handles, in which they are applied to a point.
   void add(const Border_fade& fade, std::size_t lane)
   {

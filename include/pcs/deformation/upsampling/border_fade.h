@@ -9,7 +9,10 @@
 #include <pcs/deformation/handles/Border_finder.h>
 #include <pcs/deformation/model/Elastic_network.h>
 #include <pcs/deformation/model/Harmonic_system.h>
+#include <pcs/internal/lanes.h>
 #include <pcs/neighborhood/Proximity_graph.h>
+
+#include <boost/sort/spreadsort/integer_sort.hpp>
 
 #include <algorithm>
 #include <array>
@@ -131,6 +134,7 @@ private:
         return;
       r = m_index[to] = static_cast<std::uint32_t>(m_reached.size());
       m_reached.push_back(reached);
+      pcs::internal::prefetch(m_graph.begin(to), m_graph.degree(to) * sizeof(std::uint32_t));
     } else {
       if (m_reached[r].distance <= source.distance)
         return;
@@ -154,6 +158,20 @@ private:
   std::vector<Reached> m_reached;
   std::array<std::vector<Entry>, number_of_buckets> m_buckets;
 };
+
+/// Sorts by site. Sites of several handles, which are in the order of the handles, keep this order.
+inline void sort_by_site(std::vector<Band_site>& band)
+{
+  std::vector<std::uint64_t> order(band.size()); // site, then index
+  for (std::size_t k = 0; k < band.size(); ++k)
+    order[k] = std::uint64_t(band[k].site) << 32 | k;
+  boost::sort::spreadsort::integer_sort(order.begin(), order.end());
+  std::vector<Band_site> sorted;
+  sorted.reserve(band.size());
+  for (const std::uint64_t key : order)
+    sorted.push_back(band[static_cast<std::uint32_t>(key)]);
+  band.swap(sorted);
+}
 
 /*!
   The weight of a handle at a distance of `d` spacings is `(1 - d)^2`. The difference between the
@@ -226,9 +244,7 @@ std::vector<Border_fade> border_fades(const neighborhood::Proximity_graph& graph
     search.search(begin, end, band);
     begin = end;
   }
-  std::sort(band.begin(), band.end(), [](const auto& a, const auto& b) {
-    return a.site != b.site ? a.site < b.site : a.handle < b.handle;
-  });
+  internal::sort_by_site(band);
   std::vector<Border_fade> fades;
   fades.reserve(band.size());
   for (auto begin = band.begin(); begin != band.end();) {
