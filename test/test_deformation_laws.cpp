@@ -3,6 +3,7 @@
 // Laws of deform_point_set(): effect of rigid motions, scales, shifts, permutations and threads on
 // the result.
 
+#include <pcs/deformation/solver/Elastic_factors.h>
 #include <support/deform_cloud.h>
 #include <support/threads.h>
 
@@ -105,6 +106,32 @@ BOOST_AUTO_TEST_CASE(a_rigid_motion_of_all_handles_moves_the_cloud_rigidly)
       BOOST_TEST(result.report.energy < 1e-15 * size * size);
     }
   }
+}
+
+BOOST_AUTO_TEST_CASE(large_bodies_obey_the_laws_with_less_memory)
+{
+  // Beyond `most_exact_rows`, with all points as samples.
+  const Points points = pcs_test::plate(300, 230, 0.01);
+  const auto bend = pcs::rotation(Vec3(0, 1, 0), 1.0, Vec3(2.5, 0, 0.5));
+  auto handles = pcs_test::two_handles(
+      points,
+      [](const Vec3& p) { return p.x() < 0.025; },
+      [](const Vec3& p) { return p.x() > 2.975; },
+      bend);
+  const auto bent = deform(points, handles, with_samples(1000000));
+  BOOST_TEST(bent.report.number_of_samples == points.size());
+  BOOST_TEST(bent.report.number_of_samples - handles[0].indices.size() - handles[1].indices.size() >
+             pcs::deformation::most_exact_rows);
+  const auto motion =
+      pcs::translation(Vec3(3, -2, 1)) * pcs::rotation(Vec3(1, 2, -1), 0.7, Vec3(1, 1, 1));
+  for (auto& handle : handles)
+    handle.transformation = motion * handle.transformation;
+  const auto bent_and_moved = deform(points, handles, with_samples(1000000));
+  BOOST_TEST(pcs_test::largest_distance(bent_and_moved.points, moved(bent.points, motion)) < 1e-6);
+  for (auto& handle : handles)
+    handle.transformation = motion;
+  const auto rigid = deform(points, handles, with_samples(1000000));
+  BOOST_TEST(pcs_test::largest_distance(rigid.points, moved(points, motion)) < 1e-9);
 }
 
 BOOST_AUTO_TEST_CASE(a_scale_of_all_handles_scales_the_cloud)

@@ -67,7 +67,8 @@ public:
   {
     std::vector<pcs::Quaternion> field;
     pcs::deformation::Rotation_field_solver<CGAL::Sequential_tag> solver;
-    solver(kind, m_factor, m_graph, m_constraints, m_rows, m_case.transforms, field);
+    pcs::deformation::Solve_memory memory;
+    solver(kind, m_factor, m_graph, m_constraints, m_rows, m_case.transforms, field, memory);
     return field;
   }
 

@@ -330,6 +330,21 @@ BOOST_AUTO_TEST_CASE(subtrees_of_a_large_factor_are_solved_side_by_side_with_the
   }
 }
 
+BOOST_AUTO_TEST_CASE(a_factor_in_single_precision_is_as_accurate_as_that)
+{
+  const auto a = random_spd(300, 12);
+  Cholesky factor;
+  BOOST_REQUIRE(factor.factorize(lower(a)));
+  const double exact = largest_error<3>(factor, a);
+  factor.round_to_single();
+  const double rounded = largest_error<3>(factor, a);
+  BOOST_TEST(exact < 1e-11);
+  BOOST_TEST(rounded < 1e-4);
+  BOOST_TEST(rounded > 1e-9); // it was rounded
+  BOOST_REQUIRE(factor.factorize(lower(a)));
+  BOOST_TEST(largest_error<3>(factor, a) == exact);
+}
+
 BOOST_AUTO_TEST_CASE(what_stands_above_the_diagonal_is_ignored)
 {
   const auto a = random_spd(60, 8);

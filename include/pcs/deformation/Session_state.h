@@ -77,7 +77,7 @@ struct Session_state
   // ---- memory of the next shape, kept so that frames allocate nothing
   std::vector<Similarity> next_transforms;
   Target_field next_targets;
-  std::vector<Affine_map> next_maps;
+  std::vector<Affine_map> next_maps; ///< empty for large bodies, see `read_maps()`
   std::vector<int> are_finite;
 
   // ---- output, computed from the current shape

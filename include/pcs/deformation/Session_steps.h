@@ -65,11 +65,16 @@ void prepare_points(Session_state<Tag>& s)
   s.body.links_of_site = Sample_links();
 }
 
+/// Larger bodies, in which a frame takes a large part of a second, compute every map twice rather
+/// than to store it twice. [count]
+constexpr std::size_t most_next_maps = 65536;
+
 template <class Tag>
 void prepare_samples(Session_state<Tag>& s)
 {
   s.maps.assign(s.body.network.size(), identity_map());
-  s.next_maps = s.maps;
+  if (s.maps.size() <= most_next_maps)
+    s.next_maps = s.maps;
   s.coarse = Coarse_levels<Tag>(s.body.network,
                                 s.body.component_of_sample(),
                                 s.body.options.do_preserve_volume);
@@ -215,11 +220,11 @@ bool take_shape(Session_state<Tag>& s)
                       s.next_transforms,
                       std::as_const(s.solver).targets(),
                       s.body.network.rest,
+                      s.maps,
                       s.next_maps,
                       s.are_finite))
     return false;
   s.local_transforms.swap(s.next_transforms);
-  s.maps.swap(s.next_maps);
   s.shape_transforms = s.handles.transforms();
   s.shape_targets = s.handles.targets();
   find_corrections(s, s.next_targets);

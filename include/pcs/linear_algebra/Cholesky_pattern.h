@@ -81,6 +81,9 @@ public:
     return result;
   }
 
+  /// Frees the memory that only factorisations need. Solutions remain possible.
+  void forget_places() { place = std::vector<std::size_t>(); }
+
   std::size_t size() const { return new_of_old.size(); }
   std::size_t number_of_supernodes() const { return parent.size(); }
   std::size_t width(std::size_t s) const { return first[s + 1] - first[s]; }

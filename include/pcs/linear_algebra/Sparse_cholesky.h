@@ -59,6 +59,7 @@ public:
   {
     m_pattern = std::move(pattern);
     const Cholesky_pattern& p = *m_pattern;
+    m_single = std::vector<float>();
     m_value.assign(p.number_of_values(), 0);
     m_inverse_diagonal.resize(size());
     std::vector<double> diagonal(size(), 0);
@@ -97,6 +98,25 @@ public:
   template <class ConcurrencyTag = CGAL::Sequential_tag, class Row>
   void solve(std::vector<Row>& b, std::vector<Row>& work) const
   {
+    if (m_single.empty())
+      solve_with<ConcurrencyTag>(m_value.data(), b, work);
+    else
+      solve_with<ConcurrencyTag>(m_single.data(), b, work);
+  }
+
+  /// Rounds the factor below the diagonal to single precision, which halves its memory. Solutions
+  /// are then accurate to about 1e-7 times the condition number. Ends with the next factorisation.
+  void round_to_single()
+  {
+    m_single.assign(m_value.begin(), m_value.end());
+    m_value = std::vector<double>();
+  }
+
+private:
+  /// \param value of the panels
+  template <class ConcurrencyTag, class Value, class Row>
+  void solve_with(const Value* value, std::vector<Row>& b, std::vector<Row>& work) const
+  {
     if (size() == 0)
       return;
     const Cholesky_pattern& p = *m_pattern;
@@ -116,25 +136,24 @@ public:
                   p.number_of_rows_below(t.end - 1),
                   Row(Row::Zero()));
       for (std::size_t s = t.begin; s < t.end; ++s)
-        solve_forward(s, trees.row.data(), work);
+        solve_forward(value, s, trees.row.data(), work);
     });
     for (const auto& t : trees.subtree)
       for (std::size_t r = p.first_row[t.end - 1], at = t.first_place; r < p.first_row[t.end]; ++r)
         work[p.row[r]] += work[at++];
     for (const auto s : trees.top)
-      solve_forward(s, p.row.data(), work);
+      solve_forward(value, s, p.row.data(), work);
     for (auto s = trees.top.rbegin(); s != trees.top.rend(); ++s)
-      solve_backward(*s, size(), work);
+      solve_backward(value, *s, size(), work);
     for_each_subtree([&](const Elimination_subtrees::Subtree& t) {
       for (std::size_t s = t.end; s-- > t.begin;)
-        solve_backward(s, t.scratch, work);
+        solve_backward(value, s, t.scratch, work);
     });
     pcs::internal::for_each_index<ConcurrencyTag>(size(), [&](std::size_t i) {
       b[i] = work[p.new_of_old[i]];
     });
   }
 
-private:
   struct Waiting
   {
     std::size_t supernode, offset;
@@ -211,17 +230,21 @@ private:
   }
 
   /// \param rows indices in `work` of the rows below
-  template <class Row>
-  void solve_forward(std::size_t s, const std::uint32_t* rows, std::vector<Row>& work) const
+  template <class Row, class Value>
+  void solve_forward(const Value* value,
+                     std::size_t s,
+                     const std::uint32_t* rows,
+                     std::vector<Row>& work) const
   {
     const Cholesky_pattern& p = *m_pattern;
     const std::size_t width = p.width(s), below = p.number_of_rows_below(s), height = width + below;
-    const double* panel = m_value.data() + p.first_value[s];
+    const Value* panel = value + p.first_value[s];
+    const auto at = [](const Value& v) { return static_cast<double>(v); };
     Row* own = work.data() + p.first[s];
     for (std::size_t c = 0; c < width; ++c) {
       const Row x = own[c];
       for (std::size_t r = c + 1; r < width; ++r)
-        own[r] -= panel[c * height + r] * x;
+        own[r] -= at(panel[c * height + r]) * x;
     }
     const std::uint32_t* row = rows + p.first_row[s];
     panel += width;
@@ -229,35 +252,40 @@ private:
     for (; c + 3 <= width; c += 3, panel += 3 * height) {
       const Row x = own[c], y = own[c + 1], z = own[c + 2];
       for (std::size_t r = 0; r < below; ++r)
-        work[row[r]] -= panel[r] * x + panel[height + r] * y + panel[2 * height + r] * z;
+        work[row[r]] -=
+            at(panel[r]) * x + at(panel[height + r]) * y + at(panel[2 * height + r]) * z;
     }
     for (; c < width; ++c, panel += height) {
       const Row x = own[c];
       for (std::size_t r = 0; r < below; ++r)
-        work[row[r]] -= panel[r] * x;
+        work[row[r]] -= at(panel[r]) * x;
     }
     for (c = 0; c < width; ++c)
       own[c] *= m_inverse_diagonal[p.first[s] + c];
   }
 
   /// \param scratch index in `work` of temporary entries for the rows below
-  template <class Row>
-  void solve_backward(std::size_t s, std::size_t scratch, std::vector<Row>& work) const
+  template <class Row, class Value>
+  void solve_backward(const Value* value,
+                      std::size_t s,
+                      std::size_t scratch,
+                      std::vector<Row>& work) const
   {
     const Cholesky_pattern& p = *m_pattern;
     const std::size_t width = p.width(s), below = p.number_of_rows_below(s), height = width + below;
-    const double* panel = m_value.data() + p.first_value[s];
+    const Value* panel = value + p.first_value[s];
+    const auto at = [](const Value& v) { return static_cast<double>(v); };
     const std::uint32_t* row = p.row.data() + p.first_row[s];
     Row *own = work.data() + p.first[s], *gathered = work.data() + scratch;
     for (std::size_t r = 0; r < below; ++r)
       gathered[r] = work[row[r]];
-    const double* column = panel + width;
+    const Value* column = panel + width;
     std::size_t c = 0;
     for (; c + 2 <= width; c += 2, column += 2 * height) {
       Row sum = own[c], next = own[c + 1];
       for (std::size_t r = 0; r < below; ++r) {
-        sum -= column[r] * gathered[r];
-        next -= column[height + r] * gathered[r];
+        sum -= at(column[r]) * gathered[r];
+        next -= at(column[height + r]) * gathered[r];
       }
       own[c] = sum;
       own[c + 1] = next;
@@ -265,19 +293,20 @@ private:
     if (c < width) {
       Row sum = own[c];
       for (std::size_t r = 0; r < below; ++r)
-        sum -= column[r] * gathered[r];
+        sum -= at(column[r]) * gathered[r];
       own[c] = sum;
     }
     for (c = width; c-- > 0;) {
       Row sum = own[c];
       for (std::size_t r = c + 1; r < width; ++r)
-        sum -= panel[c * height + r] * own[r];
+        sum -= at(panel[c * height + r]) * own[r];
       own[c] = sum;
     }
   }
 
   std::shared_ptr<const Cholesky_pattern> m_pattern;
   std::vector<double> m_value; ///< values of the panels
+  std::vector<float> m_single; ///< the same after `round_to_single()`
   std::vector<double> m_inverse_diagonal;
 };
 

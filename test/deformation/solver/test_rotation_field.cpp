@@ -33,13 +33,15 @@ std::vector<Quaternion> field(Rotation_field kind,
   const pcs_test::Harmonic system(graph, constraints);
   BOOST_REQUIRE(system.is_ok);
   std::vector<Quaternion> result;
+  pcs::deformation::Solve_memory memory;
   pcs::deformation::Rotation_field_solver<CGAL::Sequential_tag>()(kind,
                                                                   system.factor,
                                                                   graph,
                                                                   constraints,
                                                                   system.rows,
                                                                   transforms,
-                                                                  result);
+                                                                  result,
+                                                                  memory);
   for (const auto& q : result)
     BOOST_REQUIRE(std::abs(q.norm() - 1) < 1e-12);
   return result;

@@ -335,6 +335,7 @@ bool Sampled_body<ConcurrencyTag>::sample(const std::vector<Vec3>& sites,
     take_all_sites(sites, std::move(graph));
   else if (!link_samples(sites, std::move(graph), progress))
     return false;
+  network.rest.reserve(site_of_sample.size());
   for (const auto site : site_of_sample)
     network.rest.push_back(sites[site]);
   set_areas<ConcurrencyTag>(component_of_sample(), network);

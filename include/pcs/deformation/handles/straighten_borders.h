@@ -134,12 +134,14 @@ inline Elastic_network cut_held_edges(const Elastic_network& network,
   for (const Held_edge& b : edges)
     is_dropped[b.free] = is_dropped[b.held] = 1;
   Elastic_network result;
+  result.rest.reserve(network.size() + edges.size());
   result.rest = network.rest;
   result.links = network.links;
   result.area = network.area;
   result.surface_rank = network.surface_rank;
   result.rank = network.rank;
   Weighted_graph& surface = result.surface;
+  surface.first.reserve(network.size() + edges.size() + 1);
   surface.neighbor.reserve(graph.neighbor.size());
   surface.weight.reserve(graph.neighbor.size());
   const auto add = [&](std::uint32_t neighbor, double weight) {

@@ -105,6 +105,12 @@ inline double node_degree(const Weighted_graph& graph, std::size_t i)
   return sum;
 }
 
+/// Right-hand sides and work vectors for the solves of one network. One solve at a time uses them.
+struct Solve_memory
+{
+  std::vector<Vec3> rhs, work;
+};
+
 /*!
   Minimises the Dirichlet energy
 

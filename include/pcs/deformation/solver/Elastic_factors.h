@@ -20,6 +20,11 @@
 namespace pcs {
 namespace deformation {
 
+/// Number of unknowns up to which all factors have double precision. Above, that of the smoothing,
+/// which is a regularisation, has single precision below the diagonal; this changes positions by
+/// less than 1e-8 of the extent. [count]
+constexpr std::size_t most_exact_rows = 65536;
+
 /// Factors for the free and soft nodes, of three systems: the field of the handles, the positions,
 /// and the smoothing of deviations.
 class Elastic_factors
@@ -61,10 +66,10 @@ public:
     const Weighted_graph* surface = &network.surface;
     bool field_ok = false, smoothing_ok = false, position_ok = true;
     const Eigen::SparseMatrix<double> of_field = assemble({surface}, soft);
-    std::shared_ptr<const linear_algebra::Cholesky_pattern> pattern;
+    std::shared_ptr<linear_algebra::Cholesky_pattern> pattern;
     pcs::internal::invoke_both<ConcurrencyTag>(
         [&] {
-          pattern = std::make_shared<const linear_algebra::Cholesky_pattern>(
+          pattern = std::make_shared<linear_algebra::Cholesky_pattern>(
               of_field,
               rank_of_rows(network.surface_rank, m_rows));
         },
@@ -74,13 +79,21 @@ public:
                                            rank_of_rows(network.rank, m_rows),
                                            row_sums({surface, &network.links}, soft));
         });
-    pcs::internal::invoke_both<ConcurrencyTag>(
-        [&] { field_ok = m_field.factorize(of_field, pattern, row_sums({surface}, soft)); },
-        [&] {
-          smoothing_ok = m_smoothing.factorize(assemble({surface}, smoothing),
-                                               pattern,
-                                               row_sums({surface}, smoothing));
-        });
+    const auto factorize_field = [&] {
+      field_ok = m_field.factorize(of_field, pattern, row_sums({surface}, soft));
+    };
+    const auto factorize_smoothing = [&] { // the matrices differ in their diagonals only
+      smoothing_ok = m_smoothing.factorize(of_field, pattern, row_sums({surface}, smoothing));
+    };
+    if (m_rows.size() <= most_exact_rows)
+      pcs::internal::invoke_both<ConcurrencyTag>(factorize_field, factorize_smoothing);
+    else { // one after the other, so that only one of them has double precision at a time
+      m_field = linear_algebra::Sparse_cholesky();
+      factorize_smoothing();
+      m_smoothing.round_to_single();
+      factorize_field();
+    }
+    pattern->forget_places();
     return field_ok && smoothing_ok && position_ok;
   }
 

@@ -179,7 +179,8 @@ private:
     m_shape.smooth_deviations(m_smooth);
     if (is_accelerated)
       m_plain = m_smooth;
-    mix(is_accelerated);
+    if (is_accelerated || !is_last) // otherwise nothing would be mixed with this iterate
+      mix(is_accelerated);
     double energy = apply_deviations(!is_last);
     if (is_accelerated && !(energy < result.energy)) {
       m_mixing.restart();
@@ -188,7 +189,7 @@ private:
       energy = apply_deviations(!is_last);
     }
     if (!(energy < result.energy)) {
-      m_shape.swap_kept();
+      m_shape.swap_kept(m_best_smooth);
       m_smooth.swap(m_best_smooth);
       return false;
     }

@@ -106,7 +106,8 @@ public:
                    m_constraints,
                    rows(),
                    transforms,
-                   m_field);
+                   m_field,
+                   m_memory);
     m_rotation = m_field;
     m_scales.begin(*m_network, m_constraints, m_factors, transforms);
     if (!m_scales.growth().empty())
@@ -143,10 +144,10 @@ public:
   /// Interpolates the deviations of the nodes of handles with targets harmonically.
   void interpolate_deviations(std::vector<Vec3>& deviations)
   {
-    m_rhs = m_loads.of_rows();
-    m_factors.field().template solve<ConcurrencyTag>(m_rhs, m_work);
+    m_memory.rhs = m_loads.of_rows();
+    m_factors.field().template solve<ConcurrencyTag>(m_memory.rhs, m_memory.work);
     for (std::size_t r = 0; r < rows().size(); ++r)
-      deviations[rows().node_of_row[r]] = m_rhs[r];
+      deviations[rows().node_of_row[r]] = m_memory.rhs[r];
   }
 
   /// Computes the positions of constrained nodes, then of all other nodes.
@@ -167,7 +168,13 @@ public:
   /// directions in the last positions.
   void solve_positions(bool links_turn)
   {
-    m_position_solver(state(), *m_transforms, m_targets, m_factors, links_turn, m_position);
+    m_position_solver(state(),
+                      *m_transforms,
+                      m_targets,
+                      m_factors,
+                      links_turn,
+                      m_position,
+                      m_memory);
     if (m_link_offsets)
       for (const auto i : rows().node_of_row)
         if (i < m_link_offsets->size())
@@ -197,15 +204,15 @@ public:
   /// of nodes that handles with targets turn. [rad]
   void smooth_deviations(std::vector<Vec3>& smooth)
   {
-    m_rhs.resize(rows().size());
+    m_memory.rhs.resize(rows().size());
     pcs::internal::for_each_index<ConcurrencyTag>(rows().size(), [&](std::size_t r) {
-      m_rhs[r] = m_factors.fit_weight(r) * m_deviation[rows().node_of_row[r]];
+      m_memory.rhs[r] = m_factors.fit_weight(r) * m_deviation[rows().node_of_row[r]];
       if (!m_loads.of_rows().empty())
-        m_rhs[r] += m_loads.of_rows()[r];
+        m_memory.rhs[r] += m_loads.of_rows()[r];
     });
-    m_factors.smoothing().template solve<ConcurrencyTag>(m_rhs, m_work);
+    m_factors.smoothing().template solve<ConcurrencyTag>(m_memory.rhs, m_memory.work);
     pcs::internal::for_each_index<ConcurrencyTag>(rows().size(), [&](std::size_t r) {
-      smooth[rows().node_of_row[r]] = m_rhs[r];
+      smooth[rows().node_of_row[r]] = m_memory.rhs[r];
     });
   }
 
@@ -217,23 +224,20 @@ public:
   /// without links for the same frames. Empty without links. One solve. [L]
   void link_offsets(std::vector<Vec3>& offsets)
   {
-    m_position_solver.link_offsets(state(), *m_transforms, m_targets, m_factors, offsets);
+    m_position_solver.link_offsets(state(), *m_transforms, m_targets, m_factors, offsets, m_memory);
   }
 
   /// \name Stored States
   /// @{
 
-  /// Stores positions and frames; the frames must then be recomputed.
-  void keep()
-  {
-    m_kept_position = m_position;
-    m_kept_frame.resize(m_frame.size());
-    m_kept_frame.swap(m_frame);
-  }
-  void swap_kept()
+  /// Stores the positions.
+  void keep() { m_kept_position = m_position; }
+  /// Restores positions and frames. \param deviations those of the stored positions
+  void swap_kept(const std::vector<Vec3>& deviations)
   {
     m_position.swap(m_kept_position);
-    m_frame.swap(m_kept_frame);
+    turn(deviations);
+    find_frames();
   }
   /// Restores the stored positions only.
   void restart_from_kept() { m_position = m_kept_position; }
@@ -248,9 +252,10 @@ public:
   }
   void restore_all()
   {
-    swap_kept();
+    m_position.swap(m_kept_position);
     m_deviation.swap(m_kept_deviation);
     m_rotation.swap(m_kept_rotation);
+    find_frames();
     m_position_solver.restore_directing(m_kept_directing);
   }
 
@@ -312,13 +317,14 @@ private:
     interpolate_deviations(deviations);
     turn(deviations);
     update_frames();
-    m_position_solver.without_links(state(), *m_transforms, m_targets, m_factors, with);
+    m_position_solver.without_links(state(), *m_transforms, m_targets, m_factors, with, m_memory);
     Node_targets targets;
     std::swap(targets, m_targets);
     m_rotation = m_field;
     place_constrained_nodes(*m_network, m_constraints, *m_transforms, m_targets, m_position);
     update_frames();
-    m_position_solver.without_links(state(), *m_transforms, m_targets, m_factors, without);
+    m_position_solver
+        .without_links(state(), *m_transforms, m_targets, m_factors, without, m_memory);
     std::swap(targets, m_targets);
     place_constrained_nodes(*m_network, m_constraints, *m_transforms, m_targets, m_position);
     m_loads.find_link_targets(state(), *m_transforms, m_targets, with, without);
@@ -366,10 +372,21 @@ private:
 
   void update_frames()
   {
-    if (is_stretched()) {
-      m_target.resize(m_network->size());
-      m_target_stretch = m_stretch; // which the next measurement changes while links are measured
-    }
+    find_frames();
+    if (!is_stretched())
+      return;
+    m_target.resize(m_network->size());
+    m_target_stretch = m_stretch; // which the next measurement changes while links are measured
+    pcs::internal::for_each_index<ConcurrencyTag>(
+        m_network->size(),
+        [&](std::size_t i) { m_target[i] = m_frame[i] * m_stretch[i]; },
+        block);
+  }
+
+  /// Computes the frames from the rotations. They are not stored for a later return, as they have
+  /// the largest share of the memory of a state.
+  void find_frames()
+  {
     pcs::internal::for_each_index<ConcurrencyTag>(
         m_network->size(),
         [&](std::size_t i) {
@@ -382,8 +399,6 @@ private:
             if (!m_scales.growth().empty())
               m_frame[i] *= m_scales.growth()[i];
           }
-          if (is_stretched())
-            m_target[i] = m_frame[i] * m_stretch[i];
         },
         block);
   }
@@ -397,12 +412,13 @@ private:
 
   const std::vector<Similarity>* m_transforms = nullptr;
   const std::vector<Vec3>* m_link_offsets = nullptr;
+  Solve_memory m_memory;
   Node_targets m_targets;
   Target_loads m_loads;
   double m_poisson_ratio = 0;
   std::vector<Quaternion> m_field, m_rotation, m_kept_rotation;
-  std::vector<Eigen::Matrix3d> m_frame, m_kept_frame, m_stretch, m_target, m_target_stretch;
-  std::vector<Vec3> m_position, m_kept_position, m_ungrown, m_kept_directing, m_rhs, m_work;
+  std::vector<Eigen::Matrix3d> m_frame, m_stretch, m_target, m_target_stretch;
+  std::vector<Vec3> m_position, m_kept_position, m_ungrown, m_kept_directing;
   std::vector<Vec3> m_deviation, m_kept_deviation; ///< of the best local rotations from the field
   std::vector<double> m_energies;                  ///< by block of nodes
 };

@@ -37,8 +37,9 @@ inline void place_constrained_nodes(const Elastic_network& network,
 }
 
 /*!
-  Solves `(L + L_links) x = b`. The target of a surface edge is its rest edge, mapped by the mean of
-  the frames at its ends. The target of a link has the rest length and a given direction.
+  Solves `(L + L_links) x = b` in the given memory, whose content does not matter. The target of a
+  surface edge is its rest edge, mapped by the mean of the frames at its ends. The target of a link
+  has the rest length and a given direction.
 */
 template <class ConcurrencyTag>
 class Position_solver
@@ -52,12 +53,13 @@ public:
                   const Node_targets& targets,
                   const Elastic_factors& factors,
                   bool links_turn,
-                  std::vector<Vec3>& position)
+                  std::vector<Vec3>& position,
+                  Solve_memory& memory)
   {
     const auto& links = state.network.links;
     if (!links.neighbor.empty() && !links_turn)
       m_directing = position;
-    solve(factors, factors.position(), [&](std::size_t i) {
+    solve(factors, factors.position(), memory, [&](std::size_t i) {
       Vec3 b = surface_load(state, transforms, targets, i);
       if (!links.neighbor.empty())
         for (std::size_t e = links.first[i]; e < links.first[i + 1]; ++e) {
@@ -68,8 +70,8 @@ public:
         }
       return b;
     });
-    pcs::internal::for_each_index<ConcurrencyTag>(m_rhs.size(), [&](std::size_t r) {
-      position[factors.rows().node_of_row[r]] = m_rhs[r];
+    pcs::internal::for_each_index<ConcurrencyTag>(memory.rhs.size(), [&](std::size_t r) {
+      position[factors.rows().node_of_row[r]] = memory.rhs[r];
     });
     if (!links.neighbor.empty() && links_turn)
       m_directing = position;
@@ -86,14 +88,15 @@ public:
                      const std::vector<Similarity>& transforms,
                      const Node_targets& targets,
                      const Elastic_factors& factors,
-                     std::vector<Vec3>& result)
+                     std::vector<Vec3>& result,
+                     Solve_memory& memory)
   {
-    solve(factors, factors.field(), [&](std::size_t i) {
+    solve(factors, factors.field(), memory, [&](std::size_t i) {
       return surface_load(state, transforms, targets, i);
     });
     result = state.position;
-    for (std::size_t r = 0; r < m_rhs.size(); ++r)
-      result[factors.rows().node_of_row[r]] = m_rhs[r];
+    for (std::size_t r = 0; r < memory.rhs.size(); ++r)
+      result[factors.rows().node_of_row[r]] = memory.rhs[r];
   }
 
   /// Computes the displacements by the links: the positions of `state` minus the positions without
@@ -102,33 +105,36 @@ public:
                     const std::vector<Similarity>& transforms,
                     const Node_targets& targets,
                     const Elastic_factors& factors,
-                    std::vector<Vec3>& offsets)
+                    std::vector<Vec3>& offsets,
+                    Solve_memory& memory)
   {
     offsets.clear();
     if (state.network.links.neighbor.empty())
       return;
-    solve(factors, factors.field(), [&](std::size_t i) {
+    solve(factors, factors.field(), memory, [&](std::size_t i) {
       return surface_load(state, transforms, targets, i);
     });
     offsets.assign(state.network.size(), Vec3::Zero());
-    for (std::size_t r = 0; r < m_rhs.size(); ++r) {
+    for (std::size_t r = 0; r < memory.rhs.size(); ++r) {
       const std::size_t i = factors.rows().node_of_row[r];
-      offsets[i] = state.position[i] - m_rhs[r];
+      offsets[i] = state.position[i] - memory.rhs[r];
     }
   }
 
 private:
   template <class Load>
-  void
-  solve(const Elastic_factors& factors, const linear_algebra::Sparse_cholesky& factor, Load load)
+  void solve(const Elastic_factors& factors,
+             const linear_algebra::Sparse_cholesky& factor,
+             Solve_memory& memory,
+             Load load)
   {
     const auto& node_of_row = factors.rows().node_of_row;
-    m_rhs.resize(node_of_row.size());
+    memory.rhs.resize(node_of_row.size());
     pcs::internal::for_each_index<ConcurrencyTag>(
-        m_rhs.size(),
-        [&](std::size_t r) { m_rhs[r] = load(node_of_row[r]); },
+        memory.rhs.size(),
+        [&](std::size_t r) { memory.rhs[r] = load(node_of_row[r]); },
         512);
-    factor.template solve<ConcurrencyTag>(m_rhs, m_work);
+    factor.template solve<ConcurrencyTag>(memory.rhs, memory.work);
   }
 
   static Vec3 surface_load(const Elastic_state& state,
@@ -147,7 +153,7 @@ private:
     return b;
   }
 
-  std::vector<Vec3> m_rhs, m_work, m_directing;
+  std::vector<Vec3> m_directing;
 };
 
 } // namespace deformation

@@ -46,15 +46,18 @@ public:
   static constexpr double widest_lifted_angle = 1.9;
   static constexpr int number_of_intrinsic_steps = 3;
 
-  /// Writes the rotation of every node to `field`, the identity for unreached nodes.
+  /// Writes the rotation of every node to `field`, the identity for unreached nodes. `memory` may
+  /// have any content before and after the call.
   void operator()(Rotation_field kind,
                   const linear_algebra::Sparse_cholesky& factor,
                   const Weighted_graph& graph,
                   const Node_constraints& constraints,
                   const Free_rows& rows,
                   const std::vector<Similarity>& transforms,
-                  std::vector<Quaternion>& field)
+                  std::vector<Quaternion>& field,
+                  Solve_memory& memory)
   {
+    m_memory = &memory;
     m_factor = &factor;
     m_graph = &graph;
     m_constraints = &constraints;
@@ -168,8 +171,8 @@ private:
           const auto& turns = transforms[handle(i)].turns();
           return stage < turns.size() ? turns[stage] : Vec3(Vec3::Zero());
         },
-        m_rhs3,
-        m_work3,
+        m_memory->rhs,
+        m_memory->work,
         m_value3);
     pcs::internal::for_each_index<ConcurrencyTag>(m_rows->size(), [&](std::size_t r) {
       const std::size_t i = m_rows->node_of_row[r];
@@ -182,7 +185,8 @@ private:
     const auto rotation_at = [&](std::size_t j) {
       return m_constraints->is_prescribed(j) ? m_lifted[handle(j)] : field[j];
     };
-    m_rhs3.resize(m_rows->size());
+    std::vector<Vec3>& rhs = m_memory->rhs;
+    rhs.resize(m_rows->size());
     pcs::internal::for_each_index<ConcurrencyTag>(m_rows->size(), [&](std::size_t r) {
       const std::size_t i = m_rows->node_of_row[r];
       const Quaternion inverse = field[i].conjugate();
@@ -192,12 +196,12 @@ private:
       if (m_constraints->is_soft(i))
         b += m_constraints->soft_weight(i, node_degree(*m_graph, i)) *
              rotation_log(m_lifted[handle(i)] * inverse);
-      m_rhs3[r] = b;
+      rhs[r] = b;
     });
-    m_factor->solve<ConcurrencyTag>(m_rhs3, m_work3);
+    m_factor->solve<ConcurrencyTag>(rhs, m_memory->work);
     pcs::internal::for_each_index<ConcurrencyTag>(m_rows->size(), [&](std::size_t r) {
       Quaternion& q = field[m_rows->node_of_row[r]];
-      q = (rotation_exp(m_rhs3[r]) * q).normalized();
+      q = (rotation_exp(rhs[r]) * q).normalized();
     });
   }
 
@@ -207,7 +211,8 @@ private:
   const Free_rows* m_rows = nullptr;
   std::vector<Quaternion> m_lifted;
   std::vector<char> m_has_nodes; ///< per handle
-  std::vector<Vec3> m_rhs3, m_work3, m_value3;
+  Solve_memory* m_memory = nullptr;
+  std::vector<Vec3> m_value3;
   std::vector<Vec4> m_rhs4, m_work4, m_value4;
 };
 

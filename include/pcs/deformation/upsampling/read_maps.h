@@ -38,46 +38,58 @@ has_sample_beside(const Weighted_graph& graph, std::size_t sample, std::size_t n
 /// \param targets offsets of the nodes of handles with targets; may be empty
 /// \param rest of the samples [L]
 /// \param maps one for each sample
+/// \param next memory for as many maps, or empty to save it: then every map is computed twice
 /// \param are_finite workspace
-/// \return whether all maps are finite
+/// \return whether all maps are finite; otherwise, `maps` is unchanged
 template <class ConcurrencyTag>
 bool read_maps(const Elastic_state& state,
                const std::vector<Similarity>& transforms,
                const Node_targets& targets,
                const std::vector<Vec3>& rest,
                std::vector<Affine_map>& maps,
+               std::vector<Affine_map>& next,
                std::vector<int>& are_finite)
 {
+  const auto read = [&](std::size_t s, Affine_map& map) {
+    const Node_constraint h = state.constraints.handle_of_node[s];
+    if (h == unreached_node) {
+      map = identity_map();
+      return 1;
+    }
+    const bool is_rigid = state.constraints.is_prescribed(s);
+    const bool is_measured = !is_rigid && has_sample_beside(state.network.surface, s, maps.size());
+    Eigen::Matrix3d a = is_measured ? state.deformation_gradient(s) : state.frame[s];
+    // A prescribed map is bitwise that of the handle, unless this has targets.
+    Vec3 t;
+    if (is_rigid && !targets.is_offset(s))
+      t = transforms[static_cast<std::size_t>(h)].translation();
+    else {
+      if (is_rigid)
+        a = targets.linear(transforms[static_cast<std::size_t>(h)], s);
+      t = state.position[s] - a * rest[s];
+    }
+    Eigen::Map<Row_major_matrix>(map.a) = a;
+    Eigen::Map<Vec3>(map.t) = t;
+    return a.allFinite() && t.allFinite() ? 1 : 0;
+  };
   const int is_finite = pcs::internal::blocked_reduce<ConcurrencyTag>(
       maps.size(),
       1,
       [&](std::size_t s) {
-        const Node_constraint h = state.constraints.handle_of_node[s];
-        if (h == unreached_node) {
-          maps[s] = identity_map();
-          return 1;
-        }
-        const bool is_rigid = state.constraints.is_prescribed(s);
-        const bool is_measured =
-            !is_rigid && has_sample_beside(state.network.surface, s, maps.size());
-        Eigen::Matrix3d a = is_measured ? state.deformation_gradient(s) : state.frame[s];
-        // A prescribed map is bitwise that of the handle, unless this has targets.
-        Vec3 t;
-        if (is_rigid && !targets.is_offset(s))
-          t = transforms[static_cast<std::size_t>(h)].translation();
-        else {
-          if (is_rigid)
-            a = targets.linear(transforms[static_cast<std::size_t>(h)], s);
-          t = state.position[s] - a * rest[s];
-        }
-        Eigen::Map<Row_major_matrix>(maps[s].a) = a;
-        Eigen::Map<Vec3>(maps[s].t) = t;
-        return a.allFinite() && t.allFinite() ? 1 : 0;
+        Affine_map map;
+        return read(s, next.empty() ? map : next[s]);
       },
       [](int one, int other) { return one & other; },
       512,
       are_finite);
-  return is_finite == 1;
+  if (is_finite != 1)
+    return false;
+  if (next.empty())
+    pcs::internal::for_each_index<ConcurrencyTag>(maps.size(),
+                                                  [&](std::size_t s) { read(s, maps[s]); });
+  else
+    maps.swap(next);
+  return true;
 }
 
 /// Writes the maps of the handles, in the coordinates of their transformations.
