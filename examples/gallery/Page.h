@@ -161,8 +161,8 @@ public:
       replace(page, std::string("{{") + name + "}}", text_of_file(folder + "/" + name), folder);
     replace(page, "{{editor}}", editor, folder);
     std::string text = views.dump(-1, ' ', true, Json::error_handler_t::replace);
-    for (std::size_t at = 0; (at = text.find("</", at)) != std::string::npos; at += 3)
-      text.insert(at + 1, "\\"); // would end the element
+    for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;)
+      text.replace(at, 1, "\\u003c"); // "</script" and "<!--" have a meaning in the element
     std::string data = "<script type=\"application/json\" id=\"views\">" + text + "</script>\n";
     for (std::size_t i = 0; i < m_arrays.size(); ++i)
       data += "<script type=\"text/plain\" id=\"array" + std::to_string(i) + "\">" + m_arrays[i] +

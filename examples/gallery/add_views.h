@@ -278,8 +278,14 @@ inline void add_stand(const Options& o, Page& page)
   const pcs::IO::Point_table table = read_table(o.stand);
   const std::vector<double> tree = property_of(table, "tree", o.stand, "segment_trees --points");
   std::vector<std::size_t> inside, outside;
+  constexpr double most_labels = 4294967295.0;
   double last = -1;
   for (std::size_t i = 0; i < tree.size(); ++i) {
+    if (!(tree[i] == std::floor(tree[i]) && std::abs(tree[i]) < most_labels))
+      throw pcs::IO_error(o.stand,
+                          "point " + std::to_string(i) +
+                              ": expected a whole number below 4294967295 as `tree`, or -1 for "
+                              "points of no tree");
     (tree[i] < 0 ? outside : inside).push_back(i);
     last = std::max(last, tree[i]);
   }

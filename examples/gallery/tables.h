@@ -18,6 +18,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <random>
 #include <sstream>
 #include <string>
@@ -66,6 +67,8 @@ inline std::vector<Cylinder> read_cylinders(const std::string& path)
 {
   std::string text = text_of_file(path);
   text.erase(std::remove(text.begin(), text.end(), '\r'), text.end()); // of line ends of Windows
+  if (text.rfind("\xEF\xBB\xBF", 0) == 0)                              // the mark of UTF-8
+    text.erase(0, 3);
   std::istringstream lines(text);
   std::string line, name;
   std::getline(lines, line);
@@ -100,10 +103,14 @@ inline std::vector<Cylinder> read_cylinders(const std::string& path)
     c.end = c.start + value(6) * Kernel::Vector_3(value(3), value(4), value(5));
     c.radius = value(7);
     c.radius_error = value(8);
-    if (value(9) < 1 || value(9) > 1e9 || std::abs(value(10)) > 1000)
-      throw pcs::IO_error(path,
-                          "line " + std::to_string(number) +
-                              ": expected a branch from 1 and an order up to 1000");
+    const auto fail = [&](const std::string& what) {
+      throw pcs::IO_error(path, "line " + std::to_string(number) + ": " + what);
+    };
+    if (value(9) < 1 || value(9) > 1e9 || value(9) != std::floor(value(9)) ||
+        std::abs(value(10)) > 1000)
+      fail("expected a branch from 1 and an order up to 1000");
+    if (c.radius < 0 || !((c.end - CGAL::ORIGIN).squared_length() < 1e300))
+      fail("expected a radius of 0 or more, and coordinates below 1e150");
     c.branch = static_cast<std::size_t>(value(9)) - 1;
     c.order = static_cast<int>(value(10));
     cylinders.push_back(c);
@@ -118,17 +125,18 @@ inline std::vector<std::size_t> nearest_cylinders(const std::vector<Point>& poin
                                                   const std::vector<Cylinder>& cylinders,
                                                   std::size_t none)
 {
-  std::vector<std::vector<std::size_t>> of_branch;
-  for (std::size_t i = 0; i < cylinders.size(); ++i) {
-    of_branch.resize(std::max(of_branch.size(), cylinders[i].branch + 1));
-    of_branch[cylinders[i].branch].push_back(i);
-  }
+  std::map<double, std::vector<std::size_t>> of_branch; // numbers of branches may have large gaps
+  for (std::size_t i = 0; i < cylinders.size(); ++i)
+    of_branch[static_cast<double>(cylinders[i].branch)].push_back(i);
   std::vector<std::size_t> result(points.size(), none);
   for (std::size_t p = 0; p < points.size(); ++p) {
-    if (!(branch[p] >= 0 && branch[p] < static_cast<double>(of_branch.size())))
+    if (!(branch[p] >= 0))
+      continue;
+    const auto found = of_branch.find(branch[p]);
+    if (found == of_branch.end())
       continue;
     double least = std::numeric_limits<double>::infinity();
-    for (const std::size_t i : of_branch[static_cast<std::size_t>(branch[p])]) {
+    for (const std::size_t i : found->second) {
       const Cylinder& c = cylinders[i];
       const Kernel::Vector_3 axis = c.end - c.start, v = points[p] - c.start;
       const double length = axis.squared_length();

@@ -17,6 +17,7 @@
 #include <cstdint>
 #include <cstring>
 #include <examples/Program_run.h>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -150,13 +151,14 @@ BOOST_AUTO_TEST_CASE(points_have_the_nearest_cylinder_of_their_branch)
   pcs::IO::write_points(path("scan.ply"), scan);
   write("c.csv",
         cylinder_names + "0,0,0,0,0,1,1,0.1,0,1,0,0.01,1\n0,0,1,0,0,1,1,0.1,1,1,0,0.02,1\n"
-                         "0,0,1.5,1,0,0,1,0.05,2,2,1,0,0\n");
+                         "0,0,1.5,1,0,0,1,0.05,2,2,1,0,0\n"
+                         "0,0,9,1,0,0,1,0.05,2,1000000000,1,0,0\n");
   BOOST_TEST_REQUIRE(run(arguments("--scan scan.ply --cylinders c.csv")) == 0, err);
   const std::string page = content("page.html");
   const Json view = Json::parse(element(page, "views"))[0];
   const auto of_point = array(page, view["cylinder_of_point"]);
-  BOOST_TEST((of_point == std::vector<unsigned char>{0, 0, 1, 0, 2, 0, 3, 0}));
-  BOOST_TEST((array(page, view["cylinders"]["order"]) == std::vector<unsigned char>{0, 0, 1}));
+  BOOST_TEST((of_point == std::vector<unsigned char>{0, 0, 1, 0, 2, 0, 4, 0}));
+  BOOST_TEST((array(page, view["cylinders"]["order"]) == std::vector<unsigned char>{0, 0, 1, 1}));
   const auto errors = array(page, view["cylinders"]["radius_error"]);
   float second = 0;
   std::memcpy(&second, errors.data() + 4, 4);
@@ -171,14 +173,16 @@ BOOST_AUTO_TEST_CASE(a_tree_below_breast_height_and_line_ends_of_windows_are_acc
   std::string table = cylinder_names + "0,0,0,0,0,1,1,0.1,0,1,0,0.01,1\n";
   for (std::size_t at = 0; (at = table.find('\n', at)) != std::string::npos; at += 2)
     table.insert(at, "\r");
-  write("c.csv", table);
+  write("c.csv", "\xEF\xBB\xBF" + table);
   write("r.json",
         R"({"total": {"branches": 1, "length": 1, "volume": 0.1}, "by_order": [], "height": 1,)"
-        R"( "diameter_at_breast_height": null})");
+        R"( "diameter_at_breast_height": null, "name": "</script><!--<script>"})");
   BOOST_TEST_REQUIRE(run(arguments("--scan scan.ply --cylinders c.csv --scan-report r.json")) == 0,
                      err);
   const Json view = Json::parse(element(content("page.html"), "views"))[0];
   BOOST_TEST(view["report"]["height"] == 1);
+  BOOST_TEST(view["report"]["name"] == "</script><!--<script>");
+  BOOST_TEST(content("page.html").find("<!--<script>") == std::string::npos);
 }
 
 BOOST_AUTO_TEST_CASE(invalid_input_is_refused)
@@ -195,6 +199,16 @@ BOOST_AUTO_TEST_CASE(invalid_input_is_refused)
   refuses("--scan scan.ply --cylinders c.csv", "c.csv");
   write("c.csv", "sx,sy\n");
   refuses("--scan scan.ply --cylinders c.csv", "no column `sz`");
+  write("c.csv", cylinder_names + "0,0,0,0,0,1,1,-0.1,0,1,0,0.01,1\n");
+  refuses("--scan scan.ply --cylinders c.csv", "line 2: expected a radius of 0 or more");
+  write("c.csv", cylinder_names + "0,0,0,0,0,1e308,1e308,0.1,0,1,0,0.01,1\n");
+  refuses("--scan scan.ply --cylinders c.csv", "line 2: expected a radius of 0 or more, and coor");
+  for (const double tree : {0.5, 1e18, std::numeric_limits<double>::quiet_NaN()}) {
+    Table stand(std::vector<Table::Point_3>{{0, 0, 0}, {0, 0, 1}});
+    stand.add_property("tree", std::vector<double>{-1, tree});
+    pcs::IO::write_points(path("labels.ply"), stand);
+    refuses("--stand labels.ply", "labels.ply: point 1: expected a whole number");
+  }
   write("c.csv", cylinder_names + "0,0,0,0,0,1,1,0.1,0,1,0,0.01,1\n0,0,x\n");
   refuses("--scan scan.ply --cylinders c.csv", "line 3: expected a number, found 'x'");
   write("c.csv", cylinder_names + "0,0,0,0,0,1,1,0.1,0,0,0,0.01,1\n");
