@@ -17,6 +17,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <iostream>
@@ -73,6 +74,8 @@ auto corners_of(const pcs::IO::Mesh_faces& faces)
 
 bool work(const Options& o)
 {
+  if (!(o.spacing > 0 && std::isfinite(o.spacing)))
+    throw pcs::Invalid_input("--spacing must be a finite number, more than 0");
   program::Distinct_files files;
   files.add_input(o.input);
   files.add_output(o.output);

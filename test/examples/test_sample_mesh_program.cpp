@@ -59,7 +59,8 @@ BOOST_AUTO_TEST_CASE(points_of_a_square_have_its_normal)
 
 BOOST_AUTO_TEST_CASE(bad_input_is_refused_and_touches_no_file)
 {
-  refuses(files + "--spacing 0", "square.obj: pcs::sample_mesh(): `spacing`");
+  refuses(files + "--spacing 0", "--spacing must be a finite number, more than 0");
+  refuses(files + "--spacing inf", "--spacing must be a finite number");
   refuses(files + "--spacing nan", "--spacing must be a number");
   refuses(files + "--spacing 1e-9", "too small");
   refuses("--input square.obj --output out.ply", "--spacing");
@@ -67,6 +68,9 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_and_touches_no_file)
   refuses("--input cloud.xyz --output out.ply --spacing 1", "cloud.xyz: has no faces");
   write("flat.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n");
   refuses("--input flat.off --output out.ply --spacing 1", "no area");
+  write("arrow.off", "OFF\n4 1 0\n0 0 0\n4 0 0\n4 4 0\n3 1 0\n4 0 1 2 3\n");
+  refuses("--input arrow.off --output out.ply --spacing 1",
+          "arrow.off: pcs::sample_mesh(): face 0");
   refuses("--input square.obj --output ./square.obj --spacing 1", "would destroy it");
   refuses(files + "--spacing 1 --seed 1.5", "seed");
 }

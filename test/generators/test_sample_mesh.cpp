@@ -114,7 +114,28 @@ BOOST_AUTO_TEST_CASE(faces_without_area_get_no_points)
   Faces faces = box;
   faces.push_back({0, 1, 1});
   BOOST_TEST((sample(faces, 0.1) == sample(box, 0.1)));
-  BOOST_TEST(sample({{0, 1, 2}}, 100).size() == 1u); // at least one point
+  for (const double spacing : {100., 1e200, 1e300})
+    BOOST_TEST(sample({{0, 1, 2}}, spacing).size() == 1u); // at least one point
+}
+
+BOOST_AUTO_TEST_CASE(polygons_are_divided_around_their_first_corner_or_refused)
+{
+  const std::vector<Point> places = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {3, 1, 0}, {2, 1e-9, 0}};
+  const auto sample_face = [&](const std::vector<int>& face) {
+    Samples samples;
+    pcs::sample_mesh(places, Faces{face}, 0.1, std::back_inserter(samples));
+    return samples;
+  };
+  // a concave corner comes first: its triangles cover the face
+  const Samples samples = sample_face({3, 0, 1, 2});
+  BOOST_TEST(std::abs(double(samples.size()) * 0.01 / 4 - 0.65) < 0.1);
+  for (const auto& [p, n] : samples)
+    BOOST_TEST(std::min(3 * p.y() - p.x(), p.y() - 3 * p.x() + 8) <= 1e-9);
+  for (const std::vector<int>& face : {std::vector<int>{0, 1, 2, 3}, {0, 2, 1, 3}, {1, 3, 2, 0}})
+    BOOST_CHECK_EXCEPTION(sample_face(face),
+                          pcs::Invalid_input,
+                          pcs_test::message_has("face 0 is not convex"));
+  BOOST_TEST(!sample_face({0, 4, 1, 2}).empty()); // inverted by rounding only
 }
 
 BOOST_AUTO_TEST_CASE(bad_input_is_refused)
@@ -124,7 +145,9 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused)
     BOOST_CHECK_EXCEPTION(sample(box, spacing),
                           pcs::Invalid_input,
                           pcs_test::message_has("must be a positive"));
-  BOOST_CHECK_EXCEPTION(sample(box, 1e-7), pcs::Invalid_input, pcs_test::message_has("too small"));
+  BOOST_CHECK_EXCEPTION(sample(box, 1e-7),
+                        pcs::Invalid_input,
+                        pcs_test::message_has("expected more than 4.1833e-05"));
   BOOST_CHECK_EXCEPTION(sample({{0, 1}}, 1),
                         pcs::Invalid_input,
                         pcs_test::message_has("face 0 has 2 corners"));

@@ -17,6 +17,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
@@ -29,8 +30,35 @@ namespace pcs {
 namespace generators {
 namespace internal {
 
+/// Whether the triangles around the first corner of a polygon cover it: none of them is inverted.
+/// Errors of rounding are tolerated.
+inline bool is_divided_by_first_corner(const std::vector<Eigen::Vector3d>& corners)
+{
+  constexpr double tolerance = 1e-6; // of the squared size
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double squared_size = 0, largest = 0;
+  const auto area_vector = [&](std::size_t k) -> Eigen::Vector3d {
+    return (corners[k - 1] - corners[0]).cross(corners[k] - corners[0]);
+  };
+  for (std::size_t k = 2; k < corners.size(); ++k) {
+    sum += area_vector(k);
+    largest = std::max(largest, area_vector(k).norm());
+    squared_size = std::max({squared_size,
+                             (corners[k - 1] - corners[0]).squaredNorm(),
+                             (corners[k] - corners[0]).squaredNorm()});
+  }
+  const double least = tolerance * squared_size;
+  if (largest > least && sum.norm() <= least)
+    return false; // the polygon crosses itself
+  const Eigen::Vector3d normal = sum.normalized();
+  for (std::size_t k = 2; k < corners.size(); ++k)
+    if (area_vector(k).dot(normal) < -least)
+      return false;
+  return true;
+}
+
 /// Divides the faces into triangles around their first corners. Throws `Invalid_input` if a corner
-/// does not exist, is not finite, or is missing.
+/// does not exist, is not finite, or is missing, or if the triangles of a polygon overlap.
 template <class PointRange, class FaceRange>
 std::vector<Mesh_triangle>
 triangles_of(const PointRange& points, const FaceRange& faces, const std::string& caller)
@@ -60,6 +88,10 @@ triangles_of(const PointRange& points, const FaceRange& faces, const std::string
                          caller,
                          "face " + std::to_string(number) + " has " +
                              std::to_string(corners.size()) + " corners, expected at least 3");
+    pcs::internal::check(corners.size() == 3 || is_divided_by_first_corner(corners),
+                         caller,
+                         "face " + std::to_string(number) +
+                             " is not convex, or crosses itself; divide it into triangles");
     for (std::size_t k = 2; k < corners.size(); ++k)
       triangles.push_back({corners[0], corners[k - 1], corners[k]});
     ++number;
@@ -85,7 +117,8 @@ triangles_of(const PointRange& points, const FaceRange& faces, const std::string
 
   \param points a random access range of points
   \param faces a range of ranges of indices of points: polygons with three corners or more, planar
-      and convex. Faces without area get no points
+      and convex. They are divided into triangles around their first corners. Faces without area get
+      no points
   \param spacing least distance of two points, more than 0 [L]
   \param out an output iterator that accepts `std::pair<Point, Vector>` of the kernel of the points:
       a point of a face, and the unit normal of the face. Corners are counter-clockwise if one looks
@@ -100,9 +133,10 @@ triangles_of(const PointRange& points, const FaceRange& faces, const std::string
 
   \return the output iterator behind the last point
   \throws Invalid_input if `spacing` is not a positive number; a face has less than three corners,
-      or a corner that does not exist or is not finite; the mesh has no area; or `spacing` is so
-      small that there would be more than 4e9 points, or the mesh is larger than 2^20 spacings.
-      Nothing has been written then
+      or a corner that does not exist or is not finite; triangles around the first corner of a face
+      overlap, because the face is not convex or crosses itself; the mesh has no area; or `spacing`
+      is so small that there would be more than 4e9 points, or the mesh is larger than 2^20
+      spacings. Nothing has been written then
 */
 template <class PointRange,
           class FaceRange,

@@ -16,6 +16,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -151,16 +152,21 @@ inline std::vector<Oriented_sample> sample_disks(const std::vector<Mesh_triangle
       low = low.cwiseMin(p);
       high = high.cwiseMax(p);
     }
-  const double squares = area / spacing / spacing;
-  check((high - low).maxCoeff() / spacing < 1048576 && squares < 4e9,
-        caller,
-        "`spacing` is too small for the size of the mesh; expected at least a millionth of its "
-        "extent, and at most 4e9 points");
+  const double squares = area / spacing / spacing, extent = (high - low).maxCoeff();
+  constexpr double most_cells = 1048576, most_squares = 4e9;
+  if (!(extent / spacing < most_cells && squares < most_squares)) {
+    std::ostringstream message;
+    message << "`spacing` is " << spacing
+            << ", too small for the size of the mesh; expected more than "
+            << std::max(extent / most_cells, std::sqrt(area / most_squares));
+    check(false, caller, message.str());
+  }
 
   std::vector<Oriented_sample> samples;
   Disk_grid grid(low, spacing);
   pcs::internal::Random_stream random(seed);
-  const auto number = static_cast<std::uint64_t>(std::ceil(number_of_darts_per_square * squares));
+  const auto number = // at least 1, also if the spacing is so large that `squares` is 0
+      static_cast<std::uint64_t>(std::max(1.0, std::ceil(number_of_darts_per_square * squares)));
   for (std::uint64_t k = 0; k < number; ++k) {
     const double place = area * random.uniform();
     const auto at = std::upper_bound(sums.begin(), sums.end(), place) - sums.begin();
