@@ -143,6 +143,8 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_and_touches_no_file)
   refuses(*this, "--output scan.ply --lengthen 3 0", "factor");
   refuses(*this, "--output scan.ply --prune 999999", "no branch with the id 999999");
   refuses(*this, "--output scan.ply --prune 0", "the trunk cannot be pruned");
+  refuses(*this, "--output scan.ply --prune -1", "--prune");
+  refuses(*this, "--output scan.ply --leaves 1e18", "more than 1e7 leaves");
   refuses(*this, "--output scan.ply --tree missing.swc", "missing.swc: there is no such file");
   refuses(*this, "--output scan.ply --tree in.ply", "in.ply: line 1");
   refuses(*this, "--output scan.ply --truth scan.ply", "the same file");

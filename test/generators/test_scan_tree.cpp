@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: BSL-1.0
 // Tests of the virtual scanner: determinism, laws, parameters, surroundings.
 
+#include <pcs/core/errors.h>
 #include <pcs/generators/grow_tree.h>
 #include <pcs/generators/scan_tree.h>
 #include <pcs/generators/tree_fixtures.h>
+#include <support/exceptions.h>
 #include <support/threads.h>
 #include <support/trees.h>
 
@@ -209,6 +211,10 @@ BOOST_AUTO_TEST_CASE(ground_leaves_and_posts_are_labelled)
       BOOST_TEST(std::abs(p.z()) < 0.0401);
     }
   }
+  for (const double number : {1e18, 1e308})
+    BOOST_CHECK_EXCEPTION((scanner.leaves_per_length = number, scanned(tree, scanner)),
+                          pcs::Invalid_input,
+                          pcs_test::message_has("more than 1e7 leaves"));
   // Leaves occlude wood.
   scanner.leaves_per_length = 0;
   Scan bare;

@@ -100,7 +100,9 @@ inline void declare(CLI::App& app, Scan_options& o)
   app.add_option("--age", o.age, "fraction of its final age, up to 1")
       ->capture_default_str()
       ->group(tree);
-  app.add_option("--prune", o.pruned, "ids of branches to remove")->group(tree);
+  app.add_option("--prune", o.pruned, "ids of branches to remove")
+      ->check(CLI::Range(std::int64_t(0), std::int64_t(1) << 53))
+      ->group(tree);
   app.add_option("--turn", o.turned_numbers, "id of a branch and its yaw in degrees")->group(tree);
   app.add_option("--lengthen", o.lengthened_numbers, "id of a branch and the factor of its length")
       ->group(tree);

@@ -5,6 +5,7 @@
 #ifndef PCS_GENERATORS_INTERNAL_SCENE_H
 #define PCS_GENERATORS_INTERNAL_SCENE_H
 
+#include <pcs/core/errors.h>
 #include <pcs/generators/Virtual_scanner.h>
 #include <pcs/generators/internal/Ray_tree.h>
 #include <pcs/generators/internal/normal_vector.h>
@@ -19,6 +20,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -59,8 +61,10 @@ public:
         add_branch(wood, b);
   }
 
+  //! throws `Invalid_input` if there would be too many leaves
   void add_leaves(const Scan_wood& wood, int label)
   {
+    check_number_of_leaves(wood);
     for (const auto& branch : wood.branches)
       for (std::size_t i = 1; i < branch.size(); ++i) {
         const Scan_node& a = wood.nodes[branch[i - 1]];
@@ -128,6 +132,23 @@ public:
   std::vector<Triangle> triangles;
 
 private:
+  void check_number_of_leaves(const Scan_wood& wood) const
+  {
+    constexpr double most_leaves = 1e7; // 2 triangles each
+    double length = 0;
+    for (const auto& branch : wood.branches)
+      for (std::size_t i = 1; i < branch.size(); ++i)
+        if (wood.nodes[branch[i]].radius < m_scanner->leaf_twig_radius)
+          length += (wood.nodes[branch[i]].point - wood.nodes[branch[i - 1]].point).norm();
+    if (length * m_scanner->leaves_per_length <= most_leaves)
+      return;
+    std::ostringstream message;
+    message << "pcs::Virtual_scanner: `leaves_per_length` is " << m_scanner->leaves_per_length
+            << ", which gives more than 1e7 leaves on twigs of a total length of " << length
+            << "; expected less than " << most_leaves / length;
+    throw Invalid_input(message.str());
+  }
+
   static constexpr double two_pi = 2 * pcs::internal::pi;
 
   struct Piece
