@@ -83,6 +83,7 @@ void declare(CLI::App& app, Options& options)
                  options.report,
                  "trees, counts and seconds (JSON); -: standard output");
   app.add_option("--min-points", options.min_points, "trees with fewer points get no file")
+      ->check(CLI::Range(std::int64_t(0), std::int64_t(1) << 53))
       ->capture_default_str();
   app.add_option("--up",
                  options.up,

@@ -323,6 +323,8 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused)
     BOOST_TEST(err.find(word) != std::string::npos, word << " in " << err);
   };
   refuses("--input stand.ply", "--folder");
+  refuses("--input stand.ply --folder out --min-points -1", "--min-points");
+  refuses("--input stand.ply --folder out --min-points 1e99", "--min-points");
   refuses("--input missing.ply --folder trees", "missing.ply");
   refuses("--input empty.ply --folder trees", "empty.ply");
   refuses("--input floor.xyz --folder trees", "no stem");
