@@ -541,6 +541,7 @@ BOOST_AUTO_TEST_CASE(results_that_cannot_be_written_are_found_before_the_work)
       refuses(of_file + " taken", "taken: is a directory, expected a file name");
   }
   refuses(no_trees + "out --mean --report out/mean.swc", "out/mean.swc is named twice");
+  refuses(no_trees + "out --matches - --report -", "name a file for one of them");
   refuses("--skeleton a.swc --skeleton '' --output out", "--skeleton has an empty value");
   refuses("--tree a.ply --tree '' --output out", "--tree has an empty value");
   BOOST_TEST(!exists("new"));

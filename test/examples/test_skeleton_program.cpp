@@ -484,7 +484,8 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_and_touches_no_file)
   refuses("--input tree.xyz --swc old.swc --separate", "--separate has no effect");
   refuses("--input tree.xyz --swc old.swc --beam-milliradians 1", "--scanner");
   refuses("--input tree.xyz --swc old.swc --mesh ''", "--mesh has an empty value");
-  refuses("--input tree.xyz --folder out --swc old.swc", "leave old.swc out");
+  refuses("--input tree.xyz --folder out --swc old.swc", "leave out --swc old.swc");
+  refuses("--input tree.xyz --folder out --report -", "leave out --report -");
   refuses("--input tree.xyz folder/tree.ply --folder out", "the same name");
   // Different spellings of one file, or an output of another scan of the batch.
   refuses("--input tree.xyz --swc old.swc --points folder/../tree.xyz", "the same file");

@@ -57,6 +57,9 @@ private:
           is_same = true;
           other = use.path;
         }
+    if (is_same && path == "-" && other == path)
+      throw pcs::Invalid_input("two results are to be written to standard output (-); "
+                               "name a file for one of them");
     if (is_same && path == other)
       throw pcs::Invalid_input(path + " is named twice, they are the same file; a result would "
                                       "destroy it");

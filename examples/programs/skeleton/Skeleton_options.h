@@ -22,6 +22,7 @@
 #include <map>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 namespace program {
@@ -347,18 +348,20 @@ inline std::array<const std::string*, 7> results_of(const Skeleton_options& one)
 
 inline void check_batch(const Skeleton_options& options)
 {
-  for (const std::string* path : {&options.swc,
-                                  &options.mesh,
-                                  &options.leaves,
-                                  &options.cylinders,
-                                  &options.branches,
-                                  &options.tree_table,
-                                  &options.edges,
-                                  &options.points,
-                                  &options.report})
+  const std::pair<const char*, const std::string*> paths[] = {{"--swc", &options.swc},
+                                                              {"--mesh", &options.mesh},
+                                                              {"--leaves", &options.leaves},
+                                                              {"--cylinders", &options.cylinders},
+                                                              {"--branches", &options.branches},
+                                                              {"--tree-table", &options.tree_table},
+                                                              {"--edges", &options.edges},
+                                                              {"--points", &options.points},
+                                                              {"--report", &options.report}};
+  for (const auto& [name, path] : paths)
     if (!path->empty())
-      throw pcs::Invalid_input("with --folder the results have the names of the scans; leave " +
-                               *path + " out");
+      throw pcs::Invalid_input("with --folder the results have the names of the scans, and reports "
+                               "are lines of batch.jsonl; leave out " +
+                               std::string(name) + " " + *path);
   if (!options.given.empty() || !options.root.empty() || !options.scanners.empty())
     throw pcs::Invalid_input("--skeleton, --root and --scanner belong to one scan, not to several");
   std::map<std::string, std::string> names;
