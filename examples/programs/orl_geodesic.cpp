@@ -218,7 +218,7 @@ void warn_of_whorls(const Options& o, const pcs::Orl_report& r)
       std::cerr << "orl_geodesic: warning: " << r.number_of_broken_whorls[t] << " of "
                 << r.number_of_whorls[t] << " opposite pairs or whorls of branches of "
                 << (o.skeletons.empty() ? o.trees : o.skeletons)[t]
-                << " separate on the path, because the other tree has another arrangement there\n";
+                << " separate on the path, because their partners begin at different places\n";
 }
 
 /// Returns which tree is read from the skeleton file `i`.
