@@ -214,11 +214,11 @@ BOOST_AUTO_TEST_CASE(invalid_input_is_refused)
   write("c.csv", cylinder_names + "0,0,0,0,0,1,1,0.1,0,0,0,0.01,1\n");
   refuses("--scan scan.ply --cylinders c.csv", "line 2: expected a branch from 1");
   write("c.csv", cylinder_names + "0,0,0,0,0,1,1,0.1,0,1,0,0.01,1\n");
-  const std::string report = "--scan scan.ply --cylinders c.csv --scan-report r.json";
+  const std::string with_report = "--scan scan.ply --cylinders c.csv --scan-report r.json";
   write("r.json", "[]");
-  refuses(report, "r.json: top level: the key total is missing");
+  refuses(with_report, "r.json: top level: the key total is missing");
   write("r.json", R"({"total": {"branches": 1, "length": "2", "volume": 3}})");
-  refuses(report, "r.json: /total/length: expected a number, found \"2\"");
+  refuses(with_report, "r.json: /total/length: expected a number, found \"2\"");
   scan.add_property("tree", std::vector<std::int32_t>{0});
   pcs::IO::write_points(path("stand.ply"), scan);
   write("r.json", R"({"trees": [{"tree": 0, "height": null}]})");
