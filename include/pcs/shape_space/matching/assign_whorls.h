@@ -122,6 +122,10 @@ public:
         m_whorl_gain.push_back(gain_of(g, h));
     for (const std::vector<std::size_t>& whorl : rows)
       m_partner.resize(m_partner.size() + whorl.size(), none);
+    m_whorl_of_row.resize(m_partner.size());
+    for (std::size_t g = 0; g < rows.size(); ++g)
+      for (const std::size_t i : rows[g])
+        m_whorl_of_row[i] = g;
     assign();
   }
 
@@ -129,11 +133,12 @@ public:
   const std::vector<std::size_t>& columns() const { return m_partner; }
 
   /// Updates the pairs after entries of the pairs of `rows` grew, and no others changed.
-  void raise(const std::vector<std::size_t>&)
+  void raise(const std::vector<std::size_t>& rows)
   {
-    for (std::size_t g = 0; g < m_rows.size(); ++g)
-      if (const std::size_t h = m_whorl_partner[g]; h != none)
-        m_whorl_gain[g * m_columns.size() + h] = gain_of(g, h);
+    for (const std::size_t r : rows) {
+      const std::size_t g = m_whorl_of_row[r], h = m_whorl_partner[g];
+      m_whorl_gain[g * m_columns.size() + h] = gain_of(g, h);
+    }
     assign();
   }
 
@@ -175,7 +180,7 @@ private:
   std::vector<double>& m_gain;
   std::size_t m_number_of_columns = 0;
   std::vector<double> m_whorl_gain;
-  std::vector<std::size_t> m_whorl_partner, m_partner;
+  std::vector<std::size_t> m_whorl_of_row, m_whorl_partner, m_partner;
 };
 
 } // namespace shape_space
