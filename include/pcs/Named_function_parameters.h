@@ -103,7 +103,9 @@
   PCS_OWN(change_limits)                                                                           \
   /* fit_tree_habit() */                                                                           \
   PCS_OWN(smallest_radius)                                                                         \
-  PCS_OWN(number_of_simulations)
+  PCS_OWN(number_of_simulations)                                                                   \
+  /* complete_hidden_wood() */                                                                     \
+  PCS_OWN(angular_step)
 namespace pcs {
 namespace internal_np {
 

@@ -35,6 +35,7 @@ struct Axis
   Axis_kind kind = Axis_kind::branch;
   std::vector<Vector3> points;
   std::vector<double> at, radius; ///< length from the base, and radius, of each point [L]
+  std::vector<std::size_t> nodes; ///< of the skeleton, for each point
   double error = 0;               ///< relative standard error of the radii [-]
   double flatness = unknown;      ///< ratio of the half axes of the section [-]
 
@@ -133,6 +134,7 @@ private:
       axis.at.push_back((i > 0 ? axis.at.back() : 0) + step);
       axis.points.push_back(p);
       axis.radius.push_back(radius);
+      axis.nodes.push_back(nodes[i]);
       errors += CGAL::to_double(node.radius_error) / radius;
       m_index[nodes[i]] = axis.points.size() - 1;
     }

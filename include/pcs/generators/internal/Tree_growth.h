@@ -67,6 +67,42 @@ public:
       grow(Bud(m_buds[i]));
   }
 
+  //! a known axis on which branches grow, from its base to its tip
+  struct Given_axis
+  {
+    std::vector<Vector3> points;
+    std::vector<double> at, radii; // lengths from the base, and radii, of the points
+    std::size_t parent_node = npos, parent_axis = npos;
+    int order = 0;
+    bool is_stem = false;
+  };
+
+  //! grows branches on known axes, whose nodes and branches come first; parents precede their
+  //! branches
+  void grow_on(const std::vector<Given_axis>& axes)
+  {
+    std::vector<std::vector<Place>> places;
+    for (const Given_axis& axis : axes) {
+      Bud bud;
+      bud.parent_node = axis.parent_node;
+      bud.parent_branch = axis.parent_axis;
+      bud.base = axis.points.front();
+      bud.radius = axis.radii.front();
+      bud.length = axis.at.back();
+      bud.order = axis.order;
+      bud.kind = axis.is_stem ? Kind::stem : Kind::branch;
+      bud.seed = Random_stream(m_seed, 7, m_buds.size()).bits();
+      places.push_back(add_nodes(axis, m_buds.size()));
+      m_buds.push_back(bud);
+      ++m_next_branch;
+    }
+    for (std::size_t i = 0; i < axes.size(); ++i)
+      if (axes[i].order + 1 < m_habit.number_of_orders)
+        sprout(Bud(m_buds[i]), i, places[i]);
+    for (std::size_t i = axes.size(); i < m_buds.size(); ++i)
+      grow(Bud(m_buds[i]));
+  }
+
   template <class Kernel>
   Tree_skeleton<Kernel> skeleton() const
   {
@@ -145,6 +181,24 @@ private:
     if (bud.order == 0 && m_habit.number_of_leaders > 1 && at > m_habit.fork * bud.length)
       r *= 0.85; // reduced because the wood is divided among the stems
     return std::max(r, m_habit.tip_radius);
+  }
+
+  std::vector<Place> add_nodes(const Given_axis& axis, std::size_t branch)
+  {
+    std::vector<Place> places;
+    Vector3 normal = Vector3::UnitX();
+    for (std::size_t i = 0; i < axis.points.size(); ++i) {
+      const std::size_t to = std::min(i + 1, axis.points.size() - 1);
+      const Vector3 direction = (axis.points[to] - axis.points[to - 1]).normalized();
+      normal = transported(normal, direction);
+      places.push_back({m_nodes.size(), direction, normal, axis.at[i], axis.radii[i]});
+      m_nodes.push_back({axis.points[i],
+                         normal,
+                         axis.radii[i],
+                         i > 0 ? m_nodes.size() - 1 : axis.parent_node,
+                         branch});
+    }
+    return places;
   }
 
   void grow(const Bud& bud)
