@@ -11,6 +11,7 @@
 #include <pcs/generators/hidden/Beam_visibility.h>
 #include <pcs/generators/hidden/Hidden_branches.h>
 #include <pcs/generators/hidden/missing_stems.h>
+#include <pcs/generators/hidden/pipe_radii.h>
 #include <pcs/generators/hidden/radius_correction.h>
 #include <pcs/internal/Random_stream.h>
 #include <pcs/internal/constants.h>
@@ -66,13 +67,13 @@ struct Error_shares
 /// Grows hidden branches several times; the result has those with the median volume.
 template <class ConcurrencyTag>
 Hidden_estimate estimate_hidden_wood(const habit::Tree_sample& tree,
-                                     const Tree_habit& habit,
+                                     const Tree_habit& growth,
                                      const Beam_visibility& visibility,
                                      std::uint64_t seed,
                                      std::size_t number_of_simulations)
 {
   Hidden_estimate result;
-  Hidden_branches hidden(tree, habit, visibility);
+  Hidden_branches hidden(tree, growth, visibility);
   result.density_factors = hidden.scale_density(seed);
   const auto seed_of = [&](std::size_t k) {
     return pcs::internal::Random_stream(seed, 8, k).bits();
@@ -94,11 +95,12 @@ Hidden_estimate estimate_hidden_wood(const habit::Tree_sample& tree,
   const double model = std::hypot(Error_shares::branches, hidden.density_error()) * mean;
   result.hidden_branches = with_error(mean, std::hypot(std::sqrt(variance), model), 0);
 
-  result.branches = Missing_stems(tree, habit, visibility)();
+  const habit::Tree_sample pipe = with_pipe_radii(tree);
+  result.branches = Missing_stems(pipe, growth, visibility)();
   result.number_of_stems = result.branches.size();
   const double stems = volume_of(result.branches);
   result.missing_stems = with_error(stems, Error_shares::stems * stems, 0);
-  const Radius_correction r = correct_radii(tree, visibility);
+  const Radius_correction r = correct_radii(tree, pipe, visibility);
   const double error = std::hypot(Error_shares::added * r.added, Error_shares::removed * r.removed);
   const double change = r.added - r.removed;
   result.radius_correction = {change, error, change - 2 * error, change + 2 * error};
@@ -127,13 +129,14 @@ sum_up(const Hidden_estimate& e, double measured, Inferred_volume& inferred, Inf
   total = with_error(sum, std::hypot(error, Error_shares::measured * sum), 0);
 }
 
-/// The share of the measured wood, rotated about the trunk, that no beam reaches.
+/// The share of the measured wood, rotated about the trunk, that less than a tenth of the beams
+/// reaches.
 inline double hidden_crown_share(const habit::Tree_sample& tree,
                                  const Beam_visibility& visibility,
                                  std::uint64_t seed)
 {
   constexpr std::size_t number_of_turns = 8;
-  constexpr double no_beam = 0.04; // one beam of a cell
+  constexpr double fewest_beams = 0.1; // single beams may be counted in the next cell
   const habit::Axis& trunk = tree.axes.front();
   double all = 0, hidden = 0;
   for (std::size_t a = 1; a < tree.axes.size(); ++a) {
@@ -150,7 +153,7 @@ inline double hidden_crown_share(const habit::Tree_sample& tree,
         const Vector3 q = centre + Eigen::AngleAxisd(angle, Vector3::UnitZ()) * Vector3(p - centre);
         const double length = axis.at[i] - axis.at[i - 1];
         all += length;
-        hidden += visibility.visible_share(q, axis.radius[i]) <= no_beam ? length : 0;
+        hidden += visibility.visible_share(q, axis.radius[i]) < fewest_beams ? length : 0;
       }
     }
   }

@@ -9,8 +9,12 @@
 #include <pcs/generators/habit/Tree_sample.h>
 #include <pcs/generators/hidden/Beam_visibility.h>
 #include <pcs/generators/hidden/Hidden_branches.h>
+#include <pcs/generators/hidden/pipe_radii.h>
+#include <pcs/generators/internal/Tree_growth.h>
+#include <pcs/internal/constants.h>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -69,41 +73,19 @@ private:
     double radius, at;
   };
 
-  /// The middle one of several values.
-  static double median(std::vector<double> values)
-  {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-  }
-
-  static double radius_at(const habit::Axis& axis, double at)
-  {
-    const auto next = std::lower_bound(axis.at.begin(), axis.at.end(), at);
-    const auto i = std::min(static_cast<std::size_t>(next - axis.at.begin()), axis.at.size() - 1);
-    return axis.radius[i];
-  }
-
-  /// The median radius of an axis between two lengths from its base; 0 beyond its end.
-  static double median_radius(const habit::Axis& axis, double from, double to)
-  {
-    std::vector<double> values;
-    for (double at = from; at <= to; at += (to - from) / 16)
-      values.push_back(at > axis.length() ? 0 : radius_at(axis, at));
-    return median(values);
-  }
-
   /// The largest missing section of an axis, if it is thicker than `limit`. Radii beyond a place
   /// are medians over a few diameters, since fits may collapse or grow at single places.
   std::optional<Gap> largest_gap(std::size_t number, double limit) const
   {
     constexpr double least_share = 0.45; // of the radius of the axis; errors of radii are smaller
-    constexpr double thick_child = 0.4;  // thinner branches hardly change the radius of a stem
+    constexpr double thick_child = 0.5;  // thinner branches hardly change the radius of a stem
     constexpr double flare = 6;          // radii of the foot, up to which a trunk may flare
     const habit::Axis& axis = m_tree.axes[number];
     std::optional<Gap> best;
     for (std::size_t i = 0; i < axis.at.size(); ++i) {
-      const double at = axis.at[i], before = axis.radius[i], window = 1.5 * before;
+      const double at = axis.at[i], window = 1.5 * axis.radius[i];
+      const double before =
+          std::min(axis.radius[i], median_radius(axis, std::max(0.0, at - 3 * window), at));
       if (before < limit || (axis.order == 0 && at < flare * axis.base_radius()))
         continue;
       double area =
@@ -133,41 +115,68 @@ private:
     return d.norm() > 0 ? Vector3(d.normalized()) : Vector3(Vector3::UnitZ());
   }
 
-  std::optional<Inferred_branch> continued(std::size_t a, const Gap& gap) const
+  /// The stem in a direction from a gap; its volume follows the taper of the habit.
+  Inferred_branch stem_along(std::size_t a, const Gap& gap, double length, const Vector3& d) const
   {
-    constexpr double fewest_blocked = 0.5;
+    constexpr int steps = 20;
     const habit::Axis& axis = m_tree.axes[a];
-    const double span = 6 * axis.radius[gap.point];
-    Vector3 d = direction(axis, gap.at - span, gap.at);
-    if (radius_at(axis, gap.at + span) > gap.radius / 2) { // the stems lean apart
-      const Vector3 other = direction(axis, gap.at, gap.at + span);
-      d = (2 * d.dot(other) * d - other).normalized();
-    }
-    const double rise = m_top - axis.points[gap.point].z();
-    const habit::Axis& trunk = m_tree.axes.front();
-    const double slender =
-        (m_top - trunk.points.front().z()) / radius_at(trunk, 0.1 * trunk.length());
-    const double length = std::min(slender * gap.radius, rise / std::max(0.5, d.z()));
-    if (!(length > 4 * gap.radius))
-      return std::nullopt;
     Inferred_branch stem;
     stem.parent = a;
     stem.place = gap.point;
     stem.order = axis.order + 1;
-    constexpr int steps = 20;
-    double blocked = 0;
+    const double share = m_habit.tip_share[0];
     for (int k = 0; k <= steps; ++k) {
       const double t = static_cast<double>(k) / steps;
       stem.points.push_back(axis.points[gap.point] + t * length * d);
-      const double share = m_habit.tip_share[0];
       stem.radii.push_back(gap.radius * ((1 - share) * std::pow(1 - t, m_habit.taper[0]) + share));
-      if (k < steps / 2)
-        blocked +=
-            m_visibility.blocked_share(stem.points.back(), 2 * stem.radii.back()) / (steps / 2);
     }
-    if (blocked < fewest_blocked)
-      return std::nullopt;
     return stem;
+  }
+
+  /// The share of the beams that end before or inside the lower half of a stem.
+  double blocked_share(const Inferred_branch& stem) const
+  {
+    const std::size_t half = stem.points.size() / 2;
+    double sum = 0;
+    for (std::size_t k = 0; k < half; ++k)
+      sum += m_visibility.blocked_share(stem.points[k], 2 * stem.radii[k]);
+    return sum / static_cast<double>(half);
+  }
+
+  /// The stem beyond a gap, in the direction of the axis, or where beams are blocked most.
+  std::optional<Inferred_branch> continued(std::size_t a, const Gap& gap) const
+  {
+    constexpr double fewest_blocked = 0.5;
+    constexpr int number_of_turns = 16;
+    const habit::Axis& axis = m_tree.axes[a];
+    const double span = 6 * axis.radius[gap.point];
+    const Vector3 before = direction(axis, gap.at - span, gap.at);
+    const habit::Axis& trunk = m_tree.axes.front();
+    const double rise = m_top - axis.points[gap.point].z();
+    const double slender =
+        (m_top - trunk.points.front().z()) / radius_at(trunk, 0.1 * trunk.length());
+    std::optional<Inferred_branch> best;
+    double most = fewest_blocked;
+    const Vector3 normal = internal::any_normal(before);
+    for (const double tilt : {0.0, 0.2, 0.4, 0.6}) {
+      for (int k = 0; k < (tilt > 0 ? number_of_turns : 1); ++k) {
+        const double turn = 2 * pcs::internal::pi * k / number_of_turns;
+        const Vector3 d =
+            Eigen::AngleAxisd(turn, before) * (Eigen::AngleAxisd(tilt, normal) * before);
+        const double length = std::min(slender * gap.radius, rise / std::max(0.5, d.z()));
+        if (!(length > 4 * gap.radius))
+          continue;
+        const Inferred_branch stem = stem_along(a, gap, length, d);
+        const double blocked = blocked_share(stem);
+        if (blocked > most) {
+          most = blocked;
+          best = stem;
+        }
+      }
+      if (best)
+        return best; // the smallest change of direction
+    }
+    return std::nullopt;
   }
 
   const habit::Tree_sample& m_tree;

@@ -39,21 +39,29 @@ struct Radius_correction
   double added = 0, removed = 0;
 };
 
+/// `pipe`: the tree with the least radii by the pipe model. The larger one of both changes counts.
 inline Radius_correction correct_radii(const habit::Tree_sample& tree,
+                                       const habit::Tree_sample& pipe,
                                        const Beam_visibility& visibility)
 {
   const bool is_one_sided = visibility.number_of_stations() == 1;
   Radius_correction result;
-  for (const habit::Axis& a : tree.axes)
+  for (std::size_t k = 0; k < tree.axes.size(); ++k) {
+    const habit::Axis &a = tree.axes[k], &thick = pipe.axes[k];
     for (std::size_t i = 1; i < a.at.size(); ++i) {
       const double r = (a.radius[i - 1] + a.radius[i]) / 2;
       const Vector3 p = (a.points[i - 1] + a.points[i]) / 2;
       const double ratio =
           volume_ratio(r / visibility.step_at(p), visibility.visible_share(p, r), is_one_sided);
-      const double change =
-          (ratio - 1) * frustum_volume(a.at[i] - a.at[i - 1], a.radius[i - 1], a.radius[i]);
+      const double length = a.at[i] - a.at[i - 1];
+      const double measured = frustum_volume(length, a.radius[i - 1], a.radius[i]);
+      const double carrying = frustum_volume(length, thick.radius[i - 1], thick.radius[i]);
+      const double change = carrying > measured
+                                ? std::max((ratio - 1) * measured, carrying - measured)
+                                : (ratio - 1) * measured;
       (change > 0 ? result.added : result.removed) += std::abs(change);
     }
+  }
   return result;
 }
 
