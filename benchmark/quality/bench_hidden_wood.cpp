@@ -175,7 +175,7 @@ int main(int argc, char** argv)
 {
   CLI::App app("Prints errors of the volume of virtual trees before and after hidden wood is "
                "completed.");
-  std::uint64_t first = 84000001;
+  std::uint64_t first = 85000001;
   std::size_t count = 30, stations = 1;
   app.add_option("--first-seed", first, "seed of the first tree")->capture_default_str();
   app.add_option("--trees", count, "number of trees")->capture_default_str();

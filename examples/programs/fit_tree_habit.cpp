@@ -1,12 +1,13 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Program: finds the growth parameters of skeletons, grows trees by them, and compares trees with
-// them.
+// Program: finds the growth parameters of skeletons, grows trees by them, compares trees with them,
+// and infers hidden wood.
 
 #include "common/Report_file.h"
 #include "common/read_skeleton.h"
 #include "common/run_program.h"
 #include "habit/Habit_options.h"
+#include "habit/complete_wood.h"
 #include "habit/habit_json.h"
 #include <pcs/IO/write_swc.h>
 #include <pcs/core/Tree_measures.h>
@@ -137,14 +138,34 @@ Json_report score_trees(const pcs::Tree_habit_fit& fit, const Habit_options& opt
   return report;
 }
 
+/// Infers the hidden wood of one tree; writes its branches, and returns the figures.
+Json_report complete_tree(const pcs::Tree_habit_fit& fit,
+                          const Habit_options& options,
+                          Report_file* branch_file)
+{
+  const auto wood = complete_wood(read_tree(options.complete, options), fit, options);
+  if (branch_file != nullptr)
+    branch_file->commit(swc_of(wood));
+  if (!options.is_quiet)
+    std::cout << options.complete << ": measured volume " << wood.measured_volume
+              << ", inferred volume " << wood.inferred_volume.value << " in ["
+              << wood.inferred_volume.least << ", " << wood.inferred_volume.largest
+              << "], measured and inferred " << wood.total_volume.value << " in ["
+              << wood.total_volume.least << ", " << wood.total_volume.largest << "]; "
+              << 100 * wood.hidden_crown_share << " % of the crown hidden\n";
+  return json_of(wood);
+}
+
 void run(const Habit_options& options)
 {
   check(options);
-  std::optional<Report_file> habit_file, report_file;
+  std::optional<Report_file> habit_file, report_file, branch_file;
   if (!options.input.empty())
     habit_file.emplace(options.habit);
   if (!options.report.empty())
     report_file.emplace(options.report);
+  if (!options.inferred.empty())
+    branch_file.emplace(options.inferred);
   std::string unit = options.unit;
   pcs::Tree_habit_fit fit;
   if (habit_file) {
@@ -157,6 +178,8 @@ void run(const Habit_options& options)
     report["trees"] = grow_trees(fit, options);
   if (!options.score.empty())
     report["scores"] = score_trees(fit, options);
+  if (!options.complete.empty())
+    report["hidden_wood"] = complete_tree(fit, options, branch_file ? &*branch_file : nullptr);
   if (report_file)
     report_file->commit(report);
 }

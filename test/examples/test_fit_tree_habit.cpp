@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSL-1.0
 // Tests the program fit_tree_habit: files of habits, grown trees, scores, and invalid input.
 
+#include <pcs/IO/points/Point_table.h>
 #include <pcs/IO/read_swc.h>
+#include <pcs/IO/write_points.h>
 #include <pcs/IO/write_swc.h>
 #include <pcs/generators/grow_tree.h>
 
@@ -14,6 +16,8 @@
 #include <cstddef>
 #include <examples/Program_run.h>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace test_fit_tree_habit_program {
 
@@ -33,6 +37,22 @@ struct Habit_run : Program_run
     }
     pcs::grow_tree(tree, pcs::weeping_habit().scaled(0.45));
     pcs::IO::write_swc(path("other.swc"), tree);
+  }
+
+  /// Writes the returns of a wall at x = 0 that a scanner at (6, 0, 1.5) sees, twice with stations.
+  void scan()
+  {
+    constexpr double step = 0.01;
+    std::vector<Kernel::Point_3> points;
+    for (double azimuth = -0.6; azimuth < 0.6; azimuth += step)
+      for (double elevation = -0.3; elevation < 0.6; elevation += step) {
+        const double across = std::tan(azimuth);
+        points.emplace_back(0, 6 * across, 1.5 + 6 * std::hypot(1, across) * std::tan(elevation));
+      }
+    const std::size_t n = points.size();
+    pcs::IO::Point_table table(std::move(points));
+    table.add_property("station", std::vector<int>(n, 1));
+    pcs::IO::write_points(path("scan.ply"), table);
   }
 
   void fit()
@@ -145,6 +165,56 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_and_touches_no_file)
   refuses_file("\"whorl\": 1", "\"whorl\": -1", "/habit/whorl");
   refuses_file("\"whorl\": 1", "\"whorl\": 1000", "whorl");
   BOOST_TEST(content("habit.json") == good);
+}
+
+BOOST_AUTO_TEST_CASE(hidden_wood_is_written_as_inferred)
+{
+  fit();
+  scan();
+  const std::string arguments =
+      "--habit habit.json --complete tree_1.swc --scan scan.ply --simulations 20 ";
+  const int code =
+      run(arguments + "--scanner 6 0 1.5 --inferred inferred.swc --report report.json");
+  BOOST_TEST_REQUIRE(code == 0, err);
+  const Json wood = Json::parse(content("report.json"))["hidden_wood"];
+  const double measured = wood["measured_volume"], inferred = wood["inferred_volume"]["value"];
+  const Json total = wood["measured_and_inferred_volume"];
+  BOOST_TEST(measured > 0);
+  BOOST_TEST(std::abs(total["value"].get<double>() - measured - inferred) < 1e-9);
+  BOOST_TEST(total["interval_95"][0] < total["value"]);
+  BOOST_TEST(total["interval_95"][1] > total["value"]);
+  BOOST_TEST(std::abs(wood["angular_step"].get<double>() - 0.01) < 1e-5);
+  BOOST_TEST(wood["hidden_crown_share"] > 0.1);
+  const std::string swc = content("inferred.swc");
+  BOOST_TEST(swc.find("# inferred hidden wood, not measured") == 0u);
+  BOOST_TEST(wood["inferred_branches"] > 0);
+  std::size_t bases = 0;
+  for (std::size_t at = swc.find(" -1\n"); at != std::string::npos; at = swc.find(" -1\n", at + 1))
+    ++bases;
+  BOOST_TEST(bases > 0u);
+  BOOST_TEST(bases <= wood["inferred_branches"].get<std::size_t>());
+
+  // of two stations, the labels say that the second one saw the wall
+  const int both = run(arguments + "--scanner 0 6 1.5 6 0 1.5 --report both.json");
+  BOOST_TEST_REQUIRE(both == 0, err);
+  BOOST_TEST(Json::parse(content("both.json"))["hidden_wood"] == wood);
+}
+
+BOOST_AUTO_TEST_CASE(options_of_hidden_wood_are_checked)
+{
+  fit();
+  scan();
+  const std::string known = "--habit habit.json --simulations 20 ", tree = "--complete tree_1.swc ";
+  refuses(known + tree + "--scan scan.ply --report r.json", "give --scanner");
+  refuses(known + tree + "--scanner 6 0 1.5 --report r.json", "give --scan");
+  refuses(known + tree + "--scan scan.ply --scanner 6 0 --report r.json", "three coordinates");
+  refuses(known + tree + "--scan scan.ply --scanner 6 0 1.5", "--inferred or --report");
+  refuses(known + "--scan scan.ply --grow 1 --output o.swc", "belong to --complete");
+  refuses(known + tree + "--scan scan.ply --scanner 6 0 1.5 --inferred scan.ply", "scan.ply");
+  refuses(known + tree + "--scan scan.ply --scanner 6 0 1.5 1 1 1 --stations s --inferred i.swc",
+          "no property 's'");
+  refuses(known + tree + "--scan scan.ply --scanner 6 0 1.5 --step-degrees 60 --inferred i.swc",
+          "angular_step");
 }
 
 BOOST_AUTO_TEST_SUITE_END()

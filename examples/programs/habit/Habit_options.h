@@ -29,6 +29,9 @@ struct Habit_options
   std::int64_t simulations = 100, seed = 0, grow = 0;
   double height = 0, height_spread = -1, distance = -1;
   std::vector<double> age = {1};
+  std::string complete, scan, inferred, stations = "station";
+  std::vector<double> scanners;
+  double step_degrees = 0;
   bool is_quiet = false;
 };
 
@@ -49,10 +52,18 @@ They stand apart. --score tells for each tree how far it is from trees of its he
 by the habit: the distance is about 1 for a similar tree; the share of grown trees that are as
 far is small for an outlier.
 
+--complete infers the wood of one tree that no beam of the scanner reached, from its skeleton, its
+scan (with the leaves), and the positions of the scanners. Branches grow by the habit in hidden
+places, with the density that the seen part has; nothing measured is changed. --inferred writes
+them alone (SWC; bases have no parent); the report has their volumes with 95 % intervals, as
+`inferred_...`, beside the measured volume.
+
 For example:
   fit_tree_habit --input oak_1.swc oak_2.swc --smallest-radius 0.01 --habit oak.json
   fit_tree_habit --habit oak.json --grow 20 --output forest.swc --age 0.5 1
   fit_tree_habit --habit oak.json --score unknown.swc
+  fit_tree_habit --input tree.swc --habit tree.json --smallest-radius 0.004 --radius-error 0.05
+    --complete tree.swc --scan scan.ply --scanner 8 3 1.6 --inferred hidden.swc --report r.json
 
 Exit codes: 0 success, 1 bad input or usage, 2 internal error.)";
 }
@@ -102,6 +113,19 @@ inline void declare(CLI::App& app, Habit_options& o)
       ->check(CLI::NonNegativeNumber)
       ->group(grow);
 
+  const char* hidden = "Hidden wood";
+  app.add_option("--complete", o.complete, "skeleton whose hidden wood is inferred")->group(hidden);
+  app.add_option("--scan", o.scan, "its scan: all returns, with the leaves")->group(hidden);
+  app.add_option("--scanner", o.scanners, "x y z of a scanner; for several: x y z x y z ...")
+      ->group(hidden);
+  app.add_option("--stations", o.stations, "property with the station of each point, from 0")
+      ->capture_default_str()
+      ->group(hidden);
+  app.add_option("--step-degrees", o.step_degrees, "angle between beams; 0: estimated")
+      ->check(CLI::NonNegativeNumber)
+      ->group(hidden);
+  app.add_option("--inferred", o.inferred, "write the inferred branches here (SWC)")->group(hidden);
+
   app.add_option("--score", o.score, "skeletons that are compared with the habit");
 }
 
@@ -115,20 +139,42 @@ inline std::string output_name(const std::string& path, std::size_t i, std::size
   return (p.parent_path() / name).string();
 }
 
+/// Checks the options of hidden wood.
+inline void check_hidden_wood(const Habit_options& o)
+{
+  if (o.complete.empty() && (!o.scan.empty() || !o.scanners.empty() || !o.inferred.empty()))
+    throw pcs::Invalid_input("--scan, --scanner and --inferred belong to --complete");
+  if (o.complete.empty())
+    return;
+  if (o.scan.empty())
+    throw pcs::Invalid_input("--complete needs the scan of the skeleton; give --scan");
+  if (o.scanners.empty())
+    throw pcs::Invalid_input("no station is known; give --scanner x y z, in the coordinates of the "
+                             "scan");
+  if (o.scanners.size() % 3 != 0)
+    throw pcs::Invalid_input("--scanner takes three coordinates for each scanner, found " +
+                             std::to_string(o.scanners.size()) + " numbers");
+  if (o.inferred.empty() && o.report.empty())
+    throw pcs::Invalid_input("--complete gives no result without --inferred or --report");
+}
+
 /// Checks the options further than CLI11 can. Throws `pcs::Invalid_input` or `pcs::IO_error`.
 inline void check(const Habit_options& o)
 {
   if ((o.grow > 0) != !o.output.empty())
     throw pcs::Invalid_input("--grow and --output belong together");
-  if (o.input.empty() && o.grow == 0 && o.score.empty())
-    throw pcs::Invalid_input("nothing to do; give --input, --grow or --score");
+  check_hidden_wood(o);
+  if (o.input.empty() && o.grow == 0 && o.score.empty() && o.complete.empty())
+    throw pcs::Invalid_input("nothing to do; give --input, --grow, --score or --complete");
   namespace fs = std::filesystem;
   Distinct_files distinct;
   for (const std::string& path : o.input)
     distinct.add_input(path);
   for (const std::string& path : o.score)
     distinct.add_input(path);
-  std::vector<std::string> written = {o.report};
+  distinct.add_input(o.complete);
+  distinct.add_input(o.scan);
+  std::vector<std::string> written = {o.report, o.inferred};
   if (o.input.empty())
     distinct.add_input(o.habit);
   else

@@ -61,7 +61,7 @@ inline double volume_of(const std::vector<Inferred_branch>& branches)
 struct Error_shares
 {
   static constexpr double branches = 0.3, stems = 0.4, added = 0.5, removed = 0.5;
-  static constexpr double measured = 0.025; ///< of the volume of the whole tree
+  static constexpr double measured = 0.03; ///< of the volume of the whole tree
 };
 
 /// Grows hidden branches several times; the result has those with the median volume.

@@ -77,7 +77,7 @@ private:
   /// are medians over a few diameters, since fits may collapse or grow at single places.
   std::optional<Gap> largest_gap(std::size_t number, double limit) const
   {
-    constexpr double least_share = 0.45; // of the radius of the axis; errors of radii are smaller
+    constexpr double least_share = 0.55; // of the radius of the axis; errors of radii are smaller
     constexpr double thick_child = 0.5;  // thinner branches hardly change the radius of a stem
     constexpr double flare = 6;          // radii of the foot, up to which a trunk may flare
     const habit::Axis& axis = m_tree.axes[number];
