@@ -49,8 +49,8 @@ struct Hidden_wood
   //! measured and inferred; the interval includes errors of the measured wood
   Inferred_volume total_volume;
 
-  //! share of the crown that less than a tenth of the beams reaches; the crown is the measured wood,
-  //! rotated about the trunk [-]
+  //! share of the crown that less than a tenth of the beams reaches, where the crown is the measured
+  //! wood, rotated about the trunk [-]
   double hidden_crown_share = 0;
   double density_factors[3] = {1, 1, 1}; //!< of branches on stems, on branches and on twigs [-]
   double angular_step = 0;               //!< between beams, given or estimated [rad]
