@@ -120,6 +120,10 @@ BOOST_AUTO_TEST_CASE(beams_end_at_returns)
   BOOST_TEST(view.visible_share({17, 0.5, 4}, 0.01) == 1);   // on the other side of the station
   BOOST_TEST(view.blocked_share({-2, 0.5, 4}, 0.01) > 0.75);
   BOOST_TEST(view.blocked_share({-2, 0.5, 1}, 0.01) == 0);
+  // returns of the surface itself do not hide a branch; a place before returns may be blocked
+  BOOST_TEST(view.visible_share({-0.05, 0.5, 4}, 0.01) == 1);
+  BOOST_TEST(view.blocked_share({0.05, 0.5, 4}, 0.2) > 0.75);
+  BOOST_TEST(view.blocked_share({0.5, 0.5, 4}, 0.2) == 0);
   // a rod of 1 m and 2 cm across the beams, at a distance of 15 m
   const double beams = view.number_of_beams({0, 0, 1.5}, {0, 1, 0}, 1, 0.01);
   BOOST_TEST(std::abs(beams - 0.02 / std::pow(15 * step, 2)) < 1e-9);
