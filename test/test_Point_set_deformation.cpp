@@ -11,8 +11,11 @@
 
 #include <boost/test/unit_test.hpp>
 
+#include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
+#include <stdexcept>
 #include <thread>
 #include <type_traits>
 #include <utility>
@@ -801,6 +804,90 @@ BOOST_AUTO_TEST_CASE(a_cancelled_deformation_can_be_repeated)
     session.deform();
     BOOST_TEST((points == Bar_session::fresh(samples, bend())));
   }
+}
+
+/// A wavy square whose factorisation is large enough for calls of the callback in it. All points
+/// are samples.
+struct Large_session
+{
+  static constexpr std::size_t side = 105;
+  static constexpr double end_of_factorization = 0.5; ///< fraction of `deform()`
+  Points points, rest;
+  int calls_left = -1; ///< before the answer `false`, or before an exception; negative: no limit
+  double last_value = 0;
+  bool does_throw = false;
+  std::vector<std::size_t> row[3]; ///< at one end, at the other end, in the middle
+  std::function<bool(double)> callback = [this](double value) {
+    last_value = value;
+    if (calls_left < 0 || calls_left-- > 0)
+      return true;
+    if (does_throw)
+      throw std::range_error("enough");
+    return false;
+  };
+  static Points square()
+  {
+    Points p;
+    for (std::size_t i = 0; i < side * side; ++i) {
+      const double x = double(i / side), y = double(i % side);
+      p.emplace_back(0.02 * x, 0.02 * y, 0.1 * std::sin(0.2 * x) * std::cos(0.13 * y));
+    }
+    return p;
+  }
+  auto parameters() const
+  {
+    return pcs::parameters::number_of_samples(side * side).callback(callback);
+  }
+  pcs::Point_set_deformation<Points, decltype(pcs::parameters::number_of_samples(1))> session;
+
+  Large_session() : points(square()), rest(points), session(points, parameters())
+  {
+    for (std::size_t k = 0; k < side; ++k) {
+      row[0].push_back(k);
+      row[1].push_back((side - 1) * side + k);
+      row[2].push_back(side / 2 * side + k);
+    }
+    session.add_handle(row[0]);
+    session.set_translation(session.add_handle(row[1]), Vec3(.1, .1, .5));
+  }
+};
+
+BOOST_AUTO_TEST_CASE(a_cancelled_factorisation_keeps_the_shape)
+{
+  Large_session expected;
+  expected.session.deform();
+  const Points before = expected.points;
+  expected.session.set_translation(expected.session.add_handle(expected.row[2]), Vec3(0, 0, .3));
+  expected.session.deform();
+
+  Large_session s;
+  s.session.deform();
+  BOOST_TEST((s.points == before));
+  const Eigen::Matrix3d gradient = s.session.deformation_gradient(5000);
+  s.session.set_translation(s.session.add_handle(s.row[2]), Vec3(0, 0, .3));
+  s.calls_left = 3;
+  BOOST_TEST(!s.session.preprocess());
+  int stop = 0;
+  for (;; ++stop) {
+    s.calls_left = stop;
+    s.does_throw = stop % 2 == 1;
+    if (s.does_throw)
+      BOOST_CHECK_THROW(s.session.deform(), std::range_error);
+    else
+      BOOST_TEST(s.session.deform().status == Status::cancelled, "stopped at call " << stop);
+    BOOST_TEST((s.points == before));
+    if (s.last_value >= Large_session::end_of_factorization)
+      break;
+    BOOST_TEST((s.session.deformation_gradient(5000) == gradient));
+  }
+  BOOST_TEST(stop >= 6);
+  s.calls_left = -1;
+  BOOST_TEST(s.session.preprocess());
+  BOOST_CHECK_THROW(s.session.deformation_gradient(5000), Invalid_input);
+  BOOST_TEST(s.session.deform().status != Status::cancelled);
+  BOOST_TEST((s.points == expected.points));
+  s.session.reset();
+  BOOST_TEST((s.points == s.rest));
 }
 
 BOOST_AUTO_TEST_CASE(the_region_and_the_rest_of_the_cloud_may_be_worked_on_in_turn)

@@ -333,11 +333,13 @@ public:
   /// \name Deformation
   /// @{
 
-  /// Factorises now instead of in the next `deform()`. Returns `false` if a matrix is singular.
+  /// Factorises now instead of in the next `deform()`. Returns `false` if a matrix is singular, or
+  /// if the callback returned `false`; the next `deform()` then factorises again.
   bool preprocess()
   {
     deformation::check_ready(m_session, "pcs::Point_set_deformation::preprocess()");
-    return m_session->constrain(m_elastic.stiffness);
+    internal::Progress progress(m_callback);
+    return m_session->constrain(m_elastic.stiffness, progress) == Status::converged;
   }
 
   /*!

@@ -128,6 +128,80 @@ BOOST_AUTO_TEST_CASE_TEMPLATE(both_pieces_of_work_are_done, Tag, Tags)
   BOOST_TEST(b == 2);
 }
 
+BOOST_AUTO_TEST_CASE_TEMPLATE(a_waiting_thread_calls_again_and_again, Tag, Tags)
+{
+  const auto caller = std::this_thread::get_id();
+  std::atomic<int> calls{0};
+  std::thread::id of_first, of_second;
+  internal::invoke_both<Tag>([&] { of_first = std::this_thread::get_id(); },
+                             [&] {
+                               of_second = std::this_thread::get_id();
+                               // if this is another thread, the caller waits
+                               while (of_second != caller && calls < 3)
+                                 std::this_thread::yield();
+                             },
+                             [&] {
+                               BOOST_TEST((std::this_thread::get_id() == caller));
+                               ++calls;
+                             });
+  BOOST_TEST((of_first == caller));
+  BOOST_TEST((of_second == caller || calls >= 3));
+}
+
+BOOST_AUTO_TEST_CASE_TEMPLATE(an_exception_leaves_after_both_pieces_of_work, Tag, Tags)
+{
+  const auto fail = [] { throw std::range_error("stop"); };
+  const auto nothing = [] {};
+  BOOST_CHECK_THROW(internal::invoke_both<Tag>(fail, nothing, nothing), std::range_error);
+  BOOST_CHECK_THROW(internal::invoke_both<Tag>(nothing, fail, nothing), std::range_error);
+  if (!internal::is_parallel<Tag>())
+    return;
+  for (int k = 0; k < 20; ++k) {
+    const auto caller = std::this_thread::get_id();
+    std::atomic<bool> is_released{false}, is_elsewhere{false}, has_ended{false};
+    const auto wait = [&] {
+      is_elsewhere = std::this_thread::get_id() != caller;
+      while (is_elsewhere && !is_released)
+        std::this_thread::yield();
+      has_ended = true;
+    };
+    const auto release_and_fail = [&] {
+      is_released = true;
+      throw std::range_error("stop");
+    };
+    try {
+      internal::invoke_both<Tag>(nothing, wait, release_and_fail);
+      BOOST_TEST(!is_elsewhere);
+    } catch (const std::range_error&) {
+      BOOST_TEST(is_elsewhere);
+    }
+    BOOST_TEST(has_ended);
+  }
+}
+
+BOOST_AUTO_TEST_CASE_TEMPLATE(a_loop_in_slices_visits_every_block_once_until_it_is_stopped,
+                              Tag,
+                              Tags)
+{
+  constexpr std::size_t n = 1003, block = 10, blocks_per_slice = 4;
+  for (const double stop : {2.0, 0.5, 0.0}) {
+    std::vector<int> visits(n, 0);
+    const bool is_complete = internal::for_each_block_while<Tag>(
+        n,
+        block,
+        blocks_per_slice,
+        [&](std::size_t begin, std::size_t end) {
+          for (std::size_t i = begin; i < end; ++i)
+            ++visits[i];
+        },
+        [&](double f) { return f < stop; });
+    BOOST_TEST(is_complete == (stop > 1));
+    const std::size_t end = stop > 1 ? n : stop > 0 ? 520u : 0u; // the first multiple of 40
+    for (std::size_t i = 0; i < n; ++i)
+      BOOST_TEST(visits[i] == (i < end ? 1 : 0));
+  }
+}
+
 BOOST_AUTO_TEST_CASE_TEMPLATE(an_exception_in_a_loop_reaches_the_caller, Tag, Tags)
 {
   BOOST_CHECK_THROW(internal::for_each_index<Tag>(10000,

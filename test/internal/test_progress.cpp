@@ -7,6 +7,8 @@
 #include <boost/test/unit_test.hpp>
 
 #include <limits>
+#include <stdexcept>
+#include <thread>
 #include <vector>
 
 namespace test_progress {
@@ -72,6 +74,55 @@ BOOST_AUTO_TEST_CASE(a_request_to_stop_is_remembered_and_ends_the_calls)
   BOOST_TEST(progress.is_cancelled());
   BOOST_TEST(!progress(0.4));
   BOOST_TEST(calls == 3);
+}
+
+BOOST_AUTO_TEST_CASE(other_threads_learn_the_last_answer_without_calls)
+{
+  int calls = 0;
+  pcs::internal::Progress progress([&](double) { return ++calls < 2; });
+  pcs::internal::Shared_progress shared(progress);
+  const auto in_other_thread = [&] {
+    bool goes_on = false;
+    std::thread([&] { goes_on = shared(0.5); }).join();
+    return goes_on;
+  };
+  BOOST_TEST(shared(0.1));
+  BOOST_TEST(in_other_thread());
+  BOOST_TEST(calls == 1);
+  BOOST_TEST(!shared(0.2));
+  BOOST_TEST(!in_other_thread());
+  BOOST_TEST(!shared(0.3));
+  BOOST_TEST(calls == 2);
+}
+
+BOOST_AUTO_TEST_CASE(other_threads_stop_if_the_callback_throws)
+{
+  pcs::internal::Progress progress([](double) -> bool { throw std::range_error("enough"); });
+  pcs::internal::Shared_progress shared(progress);
+  BOOST_CHECK_THROW(shared(0.1), std::range_error);
+  bool goes_on = true;
+  std::thread([&] { goes_on = shared(0.2); }).join();
+  BOOST_TEST(!goes_on);
+  BOOST_TEST(!shared(0.3)); // without another exception
+}
+
+BOOST_AUTO_TEST_CASE(parts_of_a_step_report_fractions_of_the_whole)
+{
+  using pcs::internal::Go_on;
+  double last = -1;
+  const Go_on whole = [&](double f) {
+    last = f;
+    return f < 0.7;
+  };
+  const Go_on half = pcs::internal::part_of(whole, 0.5, 1);
+  const Go_on quarter = pcs::internal::part_of(half, 0, 0.5);
+  BOOST_TEST(quarter(0.5));
+  BOOST_TEST(last == 0.625);
+  BOOST_TEST(!quarter(1));
+  BOOST_TEST(pcs::internal::goes_on(quarter, 0.25));
+  BOOST_TEST(!pcs::internal::goes_on(quarter, 1));
+  BOOST_TEST(!pcs::internal::part_of(Go_on(), 0, 1));
+  BOOST_TEST(pcs::internal::goes_on(Go_on(), 1));
 }
 
 BOOST_AUTO_TEST_CASE(without_callback_nothing_stops)

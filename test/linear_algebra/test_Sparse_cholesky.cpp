@@ -18,6 +18,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <random>
 #include <utility>
 #include <vector>
@@ -220,6 +221,72 @@ BOOST_AUTO_TEST_CASE(a_shared_pattern_gives_the_factor_of_the_new_values)
   BOOST_REQUIRE(other.factorize(lower(b), factor.pattern()));
   BOOST_TEST(largest_error<3>(factor, a) < 1e-11);
   BOOST_TEST(largest_error<3>(other, b) < 1e-11);
+}
+
+/// A matrix without zeros: the factor is one supernode.
+Cholesky::Matrix full_matrix(Eigen::Index n)
+{
+  Eigen::MatrixXd a = Eigen::MatrixXd::Constant(n, n, -1.0 / double(n));
+  a.diagonal().array() += 2;
+  return lower(a);
+}
+
+BOOST_AUTO_TEST_CASE(a_factorisation_can_be_stopped_and_repeated)
+{
+  // Supernodes of 500 columns, and one of 900, in which another call is made.
+  constexpr Eigen::Index sizes[] = {500, 500, 500, 900};
+  std::vector<Eigen::Triplet<double>> entries;
+  Eigen::Index n = 0;
+  for (const Eigen::Index size : sizes) {
+    const Cholesky::Matrix a = full_matrix(size);
+    for (Eigen::Index c = 0; c < a.outerSize(); ++c)
+      for (Cholesky::Matrix::InnerIterator i(a, c); i; ++i)
+        entries.emplace_back(int(n + i.row()), int(n + c), i.value());
+    n += size;
+  }
+  Cholesky::Matrix a(n, n);
+  a.setFromTriplets(entries.begin(), entries.end());
+  const auto pattern = std::make_shared<const pcs::linear_algebra::Cholesky_pattern>(a);
+  std::vector<double> fractions;
+  Cholesky factor;
+  const pcs::internal::Go_on record = [&](double f) {
+    fractions.push_back(f);
+    return true;
+  };
+  BOOST_REQUIRE(factor.factorize(a, pattern, {}, record));
+  BOOST_TEST(fractions.size() >= 5u);
+  BOOST_TEST((std::is_sorted(fractions.begin(), fractions.end())));
+  BOOST_TEST((fractions.front() >= 0 && fractions.back() <= 1));
+  using Row = Eigen::Matrix<double, 1, 1>;
+  const auto solution = [&](const Cholesky& f) {
+    std::vector<Row> b(static_cast<std::size_t>(n), Row::Ones()), memory;
+    f.solve(b, memory);
+    return b;
+  };
+  const auto whole = solution(factor);
+  for (std::size_t stop = 1; stop <= fractions.size(); ++stop) {
+    std::size_t calls = 0;
+    BOOST_TEST(!factor.factorize(a, pattern, {}, [&](double) { return ++calls < stop; }));
+    BOOST_TEST(calls == stop);
+  }
+  BOOST_REQUIRE(factor.factorize(a, pattern));
+  BOOST_TEST((solution(factor) == whole));
+}
+
+BOOST_AUTO_TEST_CASE(a_pattern_can_be_stopped)
+{
+  using Pattern = pcs::linear_algebra::Cholesky_pattern;
+  const auto a = lower(grid_laplacian(8));
+  int number_of_steps = 0;
+  BOOST_TEST(Pattern(a, any_order, [&](double) { return ++number_of_steps > 0; }).is_complete());
+  BOOST_TEST(number_of_steps >= 3);
+  for (int stop = 1; stop <= number_of_steps; ++stop) {
+    int calls = 0;
+    BOOST_TEST(!Pattern(a, any_order, [&](double) { return ++calls < stop; }).is_complete());
+    BOOST_TEST(calls == stop);
+  }
+  BOOST_TEST(Pattern(a).is_complete());
+  BOOST_TEST(!Pattern().is_complete());
 }
 
 BOOST_AUTO_TEST_CASE(a_factor_can_be_moved)

@@ -90,9 +90,10 @@ public:
   /// coordinates, and the rigid motion that fits them best. The next motion replaces them.
   void set_targets(std::size_t handle, const std::vector<Vec3>& targets, const char* function);
 
-  /// Factorises if handles changed since the last factorisation. Returns `false` if a matrix is
-  /// singular.
-  bool constrain(double stiffness);
+  /// Factorises if handles changed since the last factorisation. Returns `converged`,
+  /// `numerical_failure` if a matrix is singular, or `cancelled`. If it is cancelled or throws, the
+  /// current shape is kept, and the next call factorises again.
+  Status constrain(double stiffness, pcs::internal::Progress& progress);
 
   /// Solves for the current transformations. The points are not written, see `write()`. The last
   /// shape is kept if the status is `cancelled` or `numerical_failure`.

@@ -44,15 +44,21 @@ Session<ConcurrencyTag>::Session(std::vector<Vec3> points,
 {
   Session_state<ConcurrencyTag>& s = *m_state;
   std::vector<Vec3> rest = points;
-  s.is_ready = s.body.build(std::move(points), options, s.report.seconds, progress);
-  if (!s.is_ready) {
-    s.report.status = Status::cancelled;
-    return;
+  s.report.status = Status::cancelled;
+  {
+    const pcs::internal::Progress_stage stage(progress, 0, internal::end_of_body);
+    if (!s.body.build(std::move(points), options, s.report.seconds, progress))
+      return;
   }
   s.rest_positions.keep(s.body.frame, std::move(rest));
   internal::describe_body(s);
   internal::prepare_points(s);
-  internal::prepare_samples(s);
+  const pcs::internal::Go_on go_on = [&](double f) { return progress(f); };
+  internal::prepare_samples(s, pcs::internal::part_of(go_on, internal::end_of_body, 1));
+  if (!progress(1))
+    return;
+  s.is_ready = true;
+  s.report.status = Status::nothing_to_do;
   s.handles.start(s.body, region);
   internal::begin_rest_shape(s);
 }
@@ -75,7 +81,7 @@ std::size_t Session<ConcurrencyTag>::number_of_points() const
 template <class ConcurrencyTag>
 std::size_t Session<ConcurrencyTag>::number_of_samples() const
 {
-  return m_state->maps.size();
+  return m_state->is_ready ? m_state->maps.size() : 0;
 }
 
 template <class ConcurrencyTag>
@@ -134,21 +140,32 @@ void Session<ConcurrencyTag>::set_targets(std::size_t handle,
 }
 
 template <class ConcurrencyTag>
-bool Session<ConcurrencyTag>::constrain(double stiffness)
+Status Session<ConcurrencyTag>::constrain(double stiffness, pcs::internal::Progress& progress)
 {
   Session_state<ConcurrencyTag>& s = *m_state;
-  if (s.is_constrained && s.setting_of_sites == s.setting && stiffness == s.stiffness)
-    return true;
+  if (internal::is_factorized(s, stiffness))
+    return Status::converged;
   s.report.seconds.factorization = 0;
   const pcs::internal::Stage_timer timer(s.report.seconds.factorization);
   s.has_solution = s.is_constrained = false;
+  internal::Sites_guard<ConcurrencyTag> guard(s);
   s.stiffness = stiffness;
   s.setting_of_sites = s.setting;
   Body_constraints found = constrain_body(s.body, s.border_finder, s.handles, s.sites, s.report);
-  const bool is_regular = s.coarse.constrain(s.body.network, found.of_samples, stiffness);
+  pcs::internal::Shared_progress shared(progress);
+  const pcs::internal::Go_on go_on = [&shared](double f) { return shared(f); };
+  const pcs::internal::Go_on coarse = pcs::internal::part_of(go_on, 0, 0.5);
+  bool is_regular = s.coarse.constrain(s.body.network, found.of_samples, stiffness, coarse);
   s.of_samples = std::move(found.of_samples);
-  s.is_constrained = internal::constrain_finest(s, std::move(found)) && is_regular;
-  return s.is_constrained;
+  if (!progress.is_cancelled()) {
+    const pcs::internal::Go_on finest = pcs::internal::part_of(go_on, 0.5, 1);
+    is_regular = internal::constrain_finest(s, std::move(found), finest) && is_regular;
+  }
+  if (progress.is_cancelled())
+    return Status::cancelled;
+  guard.keep();
+  s.is_constrained = is_regular;
+  return is_regular ? Status::converged : Status::numerical_failure;
 }
 
 template <class ConcurrencyTag>
@@ -158,11 +175,19 @@ Status Session<ConcurrencyTag>::solve(const Elastic_options& options,
 {
   Session_state<ConcurrencyTag>& s = *m_state;
   internal::start_report(s);
-  const bool is_regular = constrain(options.stiffness);
+  const double begin = internal::is_factorized(s, options.stiffness) ? 0 : 0.5;
+  Status status = Status::converged;
+  {
+    const pcs::internal::Progress_stage stage(progress, 0, begin);
+    status = constrain(options.stiffness, progress);
+  }
+  if (status == Status::cancelled)
+    return s.report.status = status;
   if (s.handles.empty())
     return s.report.status = progress(1) ? internal::solve_nothing(s) : Status::cancelled;
-  if (!is_regular)
-    return s.report.status = Status::numerical_failure;
+  if (status == Status::numerical_failure)
+    return s.report.status = status;
+  const pcs::internal::Progress_stage stage(progress, begin, 1);
   const pcs::internal::Stage_timer timer(s.report.seconds.solving);
   const Elastic_result result = internal::solve_samples(s, options, start, progress);
   internal::describe_result(s, result);
@@ -217,7 +242,8 @@ void Session<ConcurrencyTag>::restore(const Session_snapshot& snapshot)
   s.is_at_rest = snapshot.is_at_rest;
   s.has_solution = false;
   internal::localize_transforms(s);
-  constrain(s.stiffness);
+  pcs::internal::Progress no_callback;
+  constrain(s.stiffness, no_callback);
   Target_field field;
   field.find(s.body, s.handles.points(), s.handles.targets(), s.local_transforms);
   internal::find_corrections(s, field);
@@ -231,7 +257,8 @@ void Session<ConcurrencyTag>::reset()
   internal::put_samples_at_rest(s);
   s.has_solution = false;
   internal::localize_transforms(s);
-  constrain(s.stiffness);
+  pcs::internal::Progress no_callback;
+  constrain(s.stiffness, no_callback);
 }
 
 template <class ConcurrencyTag>
@@ -343,8 +370,9 @@ void Session<ConcurrencyTag>::prepare_carrying()
   if (s.carrier)
     return;
   internal::build_carrier(s);
+  pcs::internal::Progress no_callback;
   if (s.sites.empty())
-    constrain(s.stiffness);
+    constrain(s.stiffness, no_callback);
 }
 
 template <class ConcurrencyTag>

@@ -50,7 +50,8 @@ struct Session_state
   std::uint64_t setting = 0;      ///< of the current handles and rest shape
   std::uint64_t rest_setting = 0; ///< the first setting of the rest shape
 
-  // ---- constraints of these handles; a cancelled solve does not change them
+  // ---- constraints of these handles; a cancelled factorisation leaves the sites and fades, and no
+  // ---- factors; a cancelled solve does not change them
   Site_constraints sites;
   Elastic_network
       network; ///< the samples and the nodes on the borders of handles, if there are any
@@ -94,6 +95,13 @@ struct Session_state
 namespace internal {
 
 // ---- settings and shapes
+
+/// Whether the factors are those of the current handles and stiffness.
+template <class Tag>
+bool is_factorized(const Session_state<Tag>& s, double stiffness)
+{
+  return s.is_constrained && s.setting_of_sites == s.setting && stiffness == s.stiffness;
+}
 
 /// Marks the shape as the rest shape, which is valid for all handles.
 template <class Tag>

@@ -20,6 +20,7 @@
 #include <pcs/deformation/model/Node_targets.h>
 #include <pcs/deformation/multigrid/Coarse_levels.h>
 #include <pcs/deformation/solver/Elastic_solver.h>
+#include <pcs/deformation/upsampling/Handle_fades.h>
 #include <pcs/deformation/upsampling/Upsampling.h>
 #include <pcs/deformation/upsampling/find_target_corrections.h>
 #include <pcs/deformation/upsampling/read_maps.h>
@@ -28,6 +29,7 @@
 #include <pcs/internal/progress.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <utility>
 #include <vector>
@@ -38,6 +40,9 @@ namespace deformation {
 namespace internal {
 
 // ---- construction
+
+/// Fraction of the construction after which the body is complete.
+constexpr double end_of_body = 0.9;
 
 template <class Tag>
 void describe_body(Session_state<Tag>& s)
@@ -70,36 +75,41 @@ void prepare_points(Session_state<Tag>& s)
 constexpr std::size_t most_next_maps = 65536;
 
 template <class Tag>
-void prepare_samples(Session_state<Tag>& s)
+void prepare_samples(Session_state<Tag>& s, const pcs::internal::Go_on& go_on)
 {
   s.maps.assign(s.body.network.size(), identity_map());
   if (s.maps.size() <= most_next_maps)
     s.next_maps = s.maps;
   s.coarse = Coarse_levels<Tag>(s.body.network,
                                 s.body.component_of_sample(),
-                                s.body.options.do_preserve_volume);
+                                s.body.options.do_preserve_volume,
+                                go_on);
 }
 
 // ---- constraints
 
 /// Factorises the network of the finest level and, meanwhile, finds the points near handles.
-/// Returns `false` if a matrix is singular.
+/// Returns `false` if a matrix is singular, or if `go_on` does.
 template <class Tag>
-bool constrain_finest(Session_state<Tag>& s, Body_constraints found)
+bool constrain_finest(Session_state<Tag>& s,
+                      Body_constraints found,
+                      const pcs::internal::Go_on& go_on)
 {
   if (found.has_network)
     s.network = std::move(found.network);
+  const Elastic_network& network = found.has_network ? s.network : s.body.network;
   bool is_regular = false;
-  pcs::internal::invoke_both<Tag>(
-      [&] {
-        is_regular = s.solver.constrain(found.has_network ? s.network : s.body.network,
-                                        std::move(found.of_nodes),
-                                        s.stiffness);
-      },
-      [&] {
-        if (s.body.is_sampled)
-          s.fades.find(s.body, found.border, exact_handles(s.handles));
-      });
+  const auto factorize = [&] {
+    is_regular = s.solver.constrain(network, std::move(found.of_nodes), s.stiffness, go_on);
+  };
+  const auto find_fades = [&] {
+    if (s.body.is_sampled)
+      s.fades.find(s.body, found.border, exact_handles(s.handles));
+  };
+  if (network.size() < least_watched_rows)
+    pcs::internal::invoke_both<Tag>(factorize, find_fades);
+  else // the calling thread factorises, and thus calls the callback
+    pcs::internal::invoke_both<Tag>(factorize, find_fades, [&] { go_on(1); });
   return is_regular;
 }
 
@@ -233,6 +243,39 @@ bool take_shape(Session_state<Tag>& s)
   s.is_at_rest = false;
   return true;
 }
+
+// ---- a stopped factorisation
+
+/// Unless it is kept, brings back the classes of the sites for which the current shape was
+/// computed. The matrices remain without factors.
+template <class Tag>
+class Sites_guard
+{
+public:
+  explicit Sites_guard(Session_state<Tag>& s)
+    : m_state(s), m_sites(s.sites), m_fades(s.fades), m_setting(s.setting_of_sites)
+  {
+  }
+  ~Sites_guard()
+  {
+    if (m_is_kept)
+      return;
+    m_state.sites = std::move(m_sites);
+    m_state.fades = std::move(m_fades);
+    m_state.setting_of_sites = m_setting;
+  }
+  void keep() { m_is_kept = true; }
+
+  Sites_guard(const Sites_guard&) = delete;
+  Sites_guard& operator=(const Sites_guard&) = delete;
+
+private:
+  Session_state<Tag>& m_state;
+  Site_constraints m_sites;
+  Handle_fades m_fades;
+  std::uint64_t m_setting;
+  bool m_is_kept = false;
+};
 
 // ---- a new rest shape
 

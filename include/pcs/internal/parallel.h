@@ -8,7 +8,13 @@
 #include <CGAL/tags.h>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
 #include <cstddef>
+#include <exception>
+#include <mutex>
+#include <thread>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -22,6 +28,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
+#include <tbb/task_group.h>
 #define PCS_HAS_TBB 1
 #else
 #define PCS_HAS_TBB 0
@@ -86,6 +93,28 @@ void for_each_block(std::size_t n, std::size_t block, const F& f)
     f(begin, std::min(n, begin + block));
 }
 
+/// The same, but asks `goes_on(fraction)` in the calling thread before each slice of
+/// `blocks_per_slice` blocks. Returns `false` if the answer was `false`; the remaining blocks are
+/// not processed.
+template <class ConcurrencyTag, class F, class GoesOn>
+bool for_each_block_while(std::size_t n,
+                          std::size_t block,
+                          std::size_t blocks_per_slice,
+                          const F& f,
+                          const GoesOn& goes_on)
+{
+  const std::size_t slice = block * blocks_per_slice;
+  for (std::size_t from = 0; from < n; from += slice) {
+    if (!goes_on(static_cast<double>(from) / static_cast<double>(n)))
+      return false;
+    for_each_block<ConcurrencyTag>(
+        std::min(n - from, slice),
+        block,
+        [&](std::size_t begin, std::size_t end) { f(from + begin, from + end); });
+  }
+  return true;
+}
+
 /// Calls `f(i)` once for every `i` in `[0, n)`; `f(i)` may write only data that belong to `i`.
 template <class ConcurrencyTag, class F>
 void for_each_index(std::size_t n, const F& f, std::size_t block = default_block)
@@ -141,6 +170,98 @@ void invoke_both(const F& f, const G& g)
 #else
     tbb::parallel_invoke(f, g);
 #endif
+    return;
+#endif
+  }
+  f();
+  g();
+}
+
+/// A task that one of two threads executes, whichever comes first, and the other one waits for.
+template <class F>
+class Shared_task
+{
+public:
+  explicit Shared_task(const F& f) : m_f(f) {}
+
+  /// Executes the task, unless it was taken before.
+  void run()
+  {
+    if (m_is_taken.exchange(true))
+      return;
+    try {
+      m_f();
+    } catch (...) {
+      m_error = std::current_exception();
+    }
+    const std::lock_guard<std::mutex> lock(m_mutex);
+    m_has_ended = true;
+    m_ended.notify_all();
+  }
+
+  /// Waits for the end of the task, and calls `while_waiting()` again and again.
+  template <class While_waiting>
+  void wait(const While_waiting& while_waiting)
+  {
+    constexpr std::chrono::milliseconds between_calls(10);
+    std::unique_lock<std::mutex> lock(m_mutex);
+    while (!m_ended.wait_for(lock, between_calls, [&] { return m_has_ended; })) {
+      lock.unlock();
+      while_waiting();
+      lock.lock();
+    }
+  }
+
+  /// The exception of the task, after its end.
+  const std::exception_ptr& error() const { return m_error; }
+
+private:
+  const F& m_f;
+  std::atomic<bool> m_is_taken{false};
+  bool m_has_ended = false;
+  std::exception_ptr m_error;
+  std::mutex m_mutex;
+  std::condition_variable m_ended;
+};
+
+/// Runs two independent functions, concurrently if the tag allows it, the first one in the calling
+/// thread. While this thread waits for the second one, it calls `while_waiting()` every 10 ms.
+/// Exceptions of all three are rethrown after both functions have ended.
+template <class ConcurrencyTag, class F, class G, class While_waiting>
+void invoke_both(const F& f, const G& g, const While_waiting& while_waiting)
+{
+  if constexpr (is_parallel<ConcurrencyTag>()) {
+#if PCS_HAS_TBB
+    Shared_task<G> other(g);
+    std::exception_ptr error;
+    const auto guarded = [&](const auto& task) {
+      try {
+        task();
+      } catch (...) {
+        error = std::current_exception();
+      }
+    };
+#if defined(PCS_HAS_THREAD_SANITIZER)
+    std::thread thread([&] { other.run(); });
+#else
+    tbb::task_group tasks;
+    tasks.run([&] { other.run(); });
+#endif
+    guarded(f);
+#if !defined(PCS_HAS_THREAD_SANITIZER)
+    other.run();
+#endif
+    guarded([&] { other.wait(while_waiting); });
+    other.wait([] {});
+#if defined(PCS_HAS_THREAD_SANITIZER)
+    thread.join();
+#else
+    tasks.wait();
+#endif
+    if (!error)
+      error = other.error();
+    if (error)
+      std::rethrow_exception(error);
     return;
 #endif
   }

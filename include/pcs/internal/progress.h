@@ -1,12 +1,15 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
 // Reports progress of staged work through the user's callback and remembers a request to stop.
+// Steps that run in several threads ask whether to go on.
 
 #ifndef PCS_INTERNAL_PROGRESS_H
 #define PCS_INTERNAL_PROGRESS_H
 
 #include <algorithm>
+#include <atomic>
 #include <functional>
+#include <thread>
 #include <utility>
 
 namespace pcs {
@@ -74,6 +77,54 @@ public:
 private:
   Progress& m_progress;
   double m_outer_from, m_outer_to;
+};
+
+/// Called by a step with the completed fraction of its work, in any thread. Returns `false` if the
+/// step must stop. A step calls nothing if the function is empty.
+using Go_on = std::function<bool(double)>;
+
+/// Whether to go on, after a fraction of the work.
+inline bool goes_on(const Go_on& go_on, double fraction)
+{
+  return !go_on || go_on(fraction);
+}
+
+/// Returns the function for a part of a step, from one fraction of the step to another.
+inline Go_on part_of(const Go_on& go_on, double from, double to)
+{
+  if (!go_on)
+    return {};
+  return [&go_on, from, to](double f) { return go_on(from + (to - from) * f); };
+}
+
+/// Lets all threads of a stage ask whether to go on. The callback is called in the thread that made
+/// this object. Other threads obtain its last answer.
+class Shared_progress
+{
+public:
+  explicit Shared_progress(Progress& progress)
+    : m_progress(progress), m_caller(std::this_thread::get_id())
+  {
+  }
+
+  /// Reports the completed fraction of the current stage. Returns `false` if the work must stop. If
+  /// the callback throws, the other threads stop.
+  bool operator()(double f)
+  {
+    if (std::this_thread::get_id() == m_caller && !m_is_stopped)
+      try {
+        m_is_stopped = !m_progress(f);
+      } catch (...) {
+        m_is_stopped = true;
+        throw;
+      }
+    return !m_is_stopped;
+  }
+
+private:
+  Progress& m_progress;
+  std::thread::id m_caller;
+  std::atomic<bool> m_is_stopped{false};
 };
 
 } // namespace internal

@@ -5,6 +5,7 @@
 #ifndef PCS_LINEAR_ALGEBRA_CHOLESKY_PATTERN_H
 #define PCS_LINEAR_ALGEBRA_CHOLESKY_PATTERN_H
 
+#include <pcs/internal/progress.h>
 #include <pcs/linear_algebra/Elimination_subtrees.h>
 
 #include <Eigen/OrderingMethods>
@@ -54,19 +55,37 @@ public:
   /// \param a square; entries above the diagonal are ignored
   /// \param rank distinct numbers, one per row: rows are eliminated by increasing rank as far as
   ///        the entries permit. Empty: minimum degree order.
-  explicit Cholesky_pattern(const Matrix& a, const std::vector<std::uint32_t>& rank = {})
+  /// \param go_on called after each step; if it returns `false`, the pattern remains incomplete
+  explicit Cholesky_pattern(const Matrix& a,
+                            const std::vector<std::uint32_t>& rank = {},
+                            const pcs::internal::Go_on& go_on = {})
   {
+    using pcs::internal::goes_on;
+    if (!goes_on(go_on, 0))
+      return;
     new_of_old = rank.empty() ? minimum_degree_order(a) : order_by_rank(rank);
+    if (!goes_on(go_on, 0.6))
+      return;
     std::vector<std::uint32_t> tree = elimination_tree(adjacency(a)), count;
     renumber(postorder(tree, {}), tree, count); // required by the counts
+    if (!goes_on(go_on, 0.7))
+      return;
     count = column_counts(adjacency(a), tree);
     renumber(postorder(tree, count), tree, count);
+    if (!goes_on(go_on, 0.8))
+      return;
     find_supernodes(tree, count);
     const Adjacency graph = adjacency(a);
     find_rows(graph);
+    if (!goes_on(go_on, 0.9))
+      return;
     find_places(a);
     subtrees.find(*this);
+    m_is_complete = true;
   }
+
+  /// Whether it was not stopped. An incomplete pattern permits only destruction and assignment.
+  bool is_complete() const { return m_is_complete; }
 
   /// Returns the index of each row in the order of elimination. The factor of any subset of the
   /// rows in that order has no entries that the complete factor lacks.
@@ -91,6 +110,8 @@ public:
   std::size_t number_of_values() const { return first_value.empty() ? 0 : first_value.back(); }
 
 private:
+  bool m_is_complete = false;
+
   /// Both triangles without the diagonal, in the current order.
   struct Adjacency
   {

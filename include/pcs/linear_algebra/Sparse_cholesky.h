@@ -7,6 +7,7 @@
 #define PCS_LINEAR_ALGEBRA_SPARSE_CHOLESKY_H
 
 #include <pcs/internal/parallel.h>
+#include <pcs/internal/progress.h>
 #include <pcs/linear_algebra/Cholesky_pattern.h>
 #include <pcs/linear_algebra/dense_front.h>
 
@@ -17,6 +18,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -53,14 +55,23 @@ public:
   }
 
   /// Factorises a matrix with the sparsity pattern of `pattern`.
+  /// \param go_on called about every `products_between_calls`; if it returns `false`, this
+  ///        function does so, too, and the factor must not be used
   bool factorize(const Matrix& a,
                  std::shared_ptr<const Cholesky_pattern> pattern,
-                 const std::vector<double>& row_sums = {})
+                 const std::vector<double>& row_sums = {},
+                 const pcs::internal::Go_on& go_on = {})
   {
     m_pattern = std::move(pattern);
     const Cholesky_pattern& p = *m_pattern;
     m_single = std::vector<float>();
-    m_value.assign(p.number_of_values(), 0);
+    m_value.clear();
+    m_value.reserve(p.number_of_values());
+    while (m_value.size() < p.number_of_values()) { // in parts, since new memory takes time
+      m_value.resize(std::min(p.number_of_values(), m_value.size() + values_between_calls), 0);
+      if (!pcs::internal::goes_on(go_on, 0))
+        return false;
+    }
     m_inverse_diagonal.resize(size());
     std::vector<double> diagonal(size(), 0);
     std::size_t entry = 0;
@@ -73,7 +84,7 @@ public:
         }
     for (std::size_t i = 0; i < row_sums.size(); ++i)
       diagonal[p.new_of_old[i]] = row_sums[i];
-    return factorize_panels(diagonal, !row_sums.empty());
+    return factorize_panels(diagonal, !row_sums.empty(), go_on);
   }
 
   /// The pattern of the last matrix; null before the first factorisation.
@@ -113,6 +124,9 @@ public:
   }
 
 private:
+  /// Number of values of the factor that are set to zero between two calls of `go_on`. [count]
+  static constexpr std::size_t values_between_calls = 10000000;
+
   /// \param value of the panels
   template <class ConcurrencyTag, class Value, class Row>
   void solve_with(const Value* value, std::vector<Row>& b, std::vector<Row>& work) const
@@ -159,10 +173,56 @@ private:
     std::size_t supernode, offset;
   };
 
+  /// Upper bound of the number of products for a supernode. [count]
+  double products_of(std::size_t s) const
+  {
+    const auto width = static_cast<double>(m_pattern->width(s));
+    const double height = width + static_cast<double>(m_pattern->number_of_rows_below(s));
+    return width * height * height;
+  }
+
+  /// Counts the products of a factorisation for `go_on`.
+  class Work_counter
+  {
+  public:
+    Work_counter(const Sparse_cholesky& factor, const pcs::internal::Go_on& go_on)
+      : m_factor(factor), m_go_on(go_on)
+    {
+      for (std::size_t s = 0; m_go_on && s < factor.m_pattern->number_of_supernodes(); ++s)
+        m_all += factor.products_of(s);
+    }
+
+    /// Asks, without further work. Inside a large supernode, its work does not count yet.
+    bool operator()() { return !m_go_on || m_go_on(m_all > 0 ? m_done / m_all : 1); }
+
+    /// Adds the work of a supernode, and asks if this has not been done for some time.
+    bool finish(std::size_t s)
+    {
+      if (!m_go_on)
+        return true;
+      const double products = m_factor.products_of(s);
+      m_done += products;
+      m_since += products;
+      if (m_since < products_between_calls)
+        return true;
+      m_since = 0;
+      return (*this)();
+    }
+
+  private:
+    const Sparse_cholesky& m_factor;
+    const pcs::internal::Go_on& m_go_on;
+    double m_all = 0, m_done = 0, m_since = 0;
+  };
+
   /// Factorises panel by panel. A stack stores the updates of a panel until its parent is reached.
   /// \param has_row_sums whether `diagonal` has the sums of the rows
-  bool factorize_panels(std::vector<double>& diagonal, bool has_row_sums)
+  bool factorize_panels(std::vector<double>& diagonal,
+                        bool has_row_sums,
+                        const pcs::internal::Go_on& go_on)
   {
+    Work_counter work(*this, go_on);
+    const std::function<bool()> ask = [&] { return work(); };
     const Cholesky_pattern& p = *m_pattern;
     const Factorize_front factorize_front = choose_factorize_front();
     std::vector<double> stack(p.stack_size), scaled(p.largest_panel);
@@ -189,7 +249,9 @@ private:
                             rest,
                             diagonal.data() + p.first[s],
                             diagonal_below.data(),
-                            has_row_sums}))
+                            has_row_sums,
+                            &ask}) ||
+          !work.finish(s))
         return false;
       for (std::size_t r = 0; r < below; ++r)
         diagonal[row[r]] = diagonal_below[r];

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 
 namespace pcs {
 namespace linear_algebra {
@@ -43,7 +44,12 @@ struct Front
   double *diagonal, *diagonal_below;
   /// Whether `diagonal` and `diagonal_below` are sums of rows, see `Sparse_cholesky::factorize()`.
   bool has_row_sums;
+  /// Called after some work; if it returns `false`, the factorisation fails. May be null.
+  const std::function<bool()>* go_on = nullptr;
 };
+
+/// Number of products of two numbers between two calls of `go_on`: 3 to 50 ms of work. [count]
+constexpr double products_between_calls = 1e8;
 
 namespace internal {
 
@@ -139,7 +145,7 @@ PCS_ALWAYS_INLINE double sum_of(const double* begin, const double* end)
 }
 
 /// Factorises a panel in place and subtracts its update from the rows below. Returns `false` if a
-/// pivot is not positive.
+/// pivot is not positive, or if `go_on` does.
 template <class Arithmetic>
 PCS_ALWAYS_INLINE bool factorize_front(const Front& front)
 {
@@ -147,6 +153,14 @@ PCS_ALWAYS_INLINE bool factorize_front(const Front& front)
   const std::size_t height = front.height, width = front.width;
   constexpr std::size_t strip = 4;
   const Dense_product all{panel, scaled};
+  double products = 0; // since the last call
+  const auto goes_on = [&](std::size_t rows, std::size_t columns, std::size_t count) {
+    products += static_cast<double>(rows) * static_cast<double>(columns * count);
+    if (!front.go_on || products < products_between_calls)
+      return true;
+    products = 0;
+    return (*front.go_on)();
+  };
   // Updates the columns from `begin` to `end` of `c`, which begins at entry (first, first).
   const auto subtract = [&](std::size_t begin,
                             std::size_t end,
@@ -154,7 +168,7 @@ PCS_ALWAYS_INLINE bool factorize_front(const Front& front)
                             std::size_t count,
                             const Dense_columns& c) PCS_LAMBDA_INLINE {
     std::size_t j = begin;
-    for (; j + strip <= end; j += strip)
+    for (; j + strip <= end; j += strip) {
       subtract_strip<Arithmetic, strip>(all,
                                         first + j,
                                         height,
@@ -162,12 +176,17 @@ PCS_ALWAYS_INLINE bool factorize_front(const Front& front)
                                         count,
                                         c.at(j, j),
                                         c.stride);
+      if (!goes_on(height - first - j, strip, count))
+        return false;
+    }
     for (; j < end; ++j)
       subtract_strip<Arithmetic, 1>(all, first + j, height, first + j, count, c.at(j, j), c.stride);
+    return true;
   };
   for (std::size_t begin = 0; begin < width; begin += strip) {
     const std::size_t end = std::min(width, begin + strip);
-    subtract(begin, end, 0, begin, panel);
+    if (!subtract(begin, end, 0, begin, panel))
+      return false;
     const Dense_product own{{panel.at(0, begin), panel.stride},
                             {scaled.at(0, begin), scaled.stride}};
     for (std::size_t j = begin; j < end; ++j) {
@@ -195,8 +214,7 @@ PCS_ALWAYS_INLINE bool factorize_front(const Front& front)
       }
     }
   }
-  subtract(0, height - width, width, width, rest);
-  return true;
+  return subtract(0, height - width, width, width, rest);
 }
 
 inline bool factorize_front_default(const Front& front)

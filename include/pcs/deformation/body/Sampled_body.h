@@ -122,11 +122,12 @@ private:
   /// Replaces the graph of the samples, weighted by the borders of their regions, by the graph of
   /// their Voronoi cells, with which bends are accurate however irregular the samples are. The sum
   /// of the weights, to which `weight_unit` refers, is unchanged.
-  void weigh_by_cells(const std::vector<Vec3>& sites);
+  void weigh_by_cells(const std::vector<Vec3>& sites, const pcs::internal::Go_on& go_on);
   /// Builds the graph of the samples, and the links of the sites to them.
   bool link_samples(const std::vector<Vec3>& sites, Graph graph, pcs::internal::Progress& progress);
-  /// Makes every site a sample.
-  void take_all_sites(const std::vector<Vec3>& sites, Graph graph);
+  /// Makes every site a sample. Returns `false` if cancelled.
+  bool
+  take_all_sites(const std::vector<Vec3>& sites, Graph graph, pcs::internal::Progress& progress);
   void link_interior(const std::vector<std::uint32_t>& component);
 };
 

@@ -41,7 +41,8 @@ namespace deformation {
 namespace internal {
 
 /// Fractions of the construction after which its steps end.
-constexpr double end_of_order = 0.2, end_of_neighbors = 0.6, end_of_sample_graph = 0.8,
+constexpr double end_of_order = 0.2, end_of_neighbor_graph = 0.45, end_of_short_cuts = 0.55,
+                 end_of_neighbors = 0.6, end_of_regions = 0.7, end_of_sample_graph = 0.8,
                  end_of_network = 0.9;
 /// Smallest number of samples that are spaced evenly, and weighted by Voronoi cells in their
 /// tangent planes. Fewer samples do not resolve the sides of a body: at its edges and corners,
@@ -85,7 +86,11 @@ bool Sampled_body<ConcurrencyTag>::find_neighbors(std::vector<Vec3> points,
   if (!progress(internal::end_of_order))
     return false;
   graph = neighborhood::nearest_neighbor_graph<ConcurrencyTag>(sites, options.number_of_neighbors);
+  if (!progress(internal::end_of_neighbor_graph))
+    return false;
   number_of_short_cuts = neighborhood::drop_short_cuts<ConcurrencyTag>(sites, graph);
+  if (!progress(internal::end_of_short_cuts))
+    return false;
   outliers = neighborhood::detach_outliers<ConcurrencyTag>(sites, graph);
   find_components(graph);
   return progress(internal::end_of_neighbors);
@@ -258,7 +263,8 @@ Sample_links Sampled_body<ConcurrencyTag>::link_sites(const std::vector<Vec3>& s
 }
 
 template <class ConcurrencyTag>
-void Sampled_body<ConcurrencyTag>::weigh_by_cells(const std::vector<Vec3>& sites)
+void Sampled_body<ConcurrencyTag>::weigh_by_cells(const std::vector<Vec3>& sites,
+                                                  const pcs::internal::Go_on& go_on)
 {
   std::vector<Vec3> samples;
   for (const auto site : site_of_sample)
@@ -266,7 +272,7 @@ void Sampled_body<ConcurrencyTag>::weigh_by_cells(const std::vector<Vec3>& sites
   const auto sum = [](const Weighted_graph& graph) {
     return std::accumulate(graph.weight.begin(), graph.weight.end(), 0.0);
   };
-  Weighted_graph graph = voronoi_graph<ConcurrencyTag>(samples, network.surface);
+  Weighted_graph graph = voronoi_graph<ConcurrencyTag>(samples, network.surface, go_on);
   const double before = sum(network.surface), after = sum(graph);
   if (!(after > 0))
     return;
@@ -281,10 +287,15 @@ bool Sampled_body<ConcurrencyTag>::link_samples(const std::vector<Vec3>& sites,
                                                 pcs::internal::Progress& progress)
 {
   Sample_regions regions = grow_regions<ConcurrencyTag>(sites, graph, site_of_sample);
+  if (!progress(internal::end_of_regions))
+    return false;
   network.surface =
       sample_graph<ConcurrencyTag>(sites, graph, site_of_sample, regions, weight_unit);
+  const pcs::internal::Go_on go_on = [&](double f) { return progress(f); };
   if (internal::is_resolving(options))
-    weigh_by_cells(sites);
+    weigh_by_cells(
+        sites,
+        pcs::internal::part_of(go_on, internal::end_of_regions, internal::end_of_sample_graph));
   if (!progress(internal::end_of_sample_graph))
     return false;
   links_of_site = link_sites(sites, graph, regions);
@@ -296,12 +307,18 @@ bool Sampled_body<ConcurrencyTag>::link_samples(const std::vector<Vec3>& sites,
 }
 
 template <class ConcurrencyTag>
-void Sampled_body<ConcurrencyTag>::take_all_sites(const std::vector<Vec3>& sites, Graph graph)
+bool Sampled_body<ConcurrencyTag>::take_all_sites(const std::vector<Vec3>& sites,
+                                                  Graph graph,
+                                                  pcs::internal::Progress& progress)
 {
   static_cast<Graph&>(network.surface) = std::move(graph);
   sample_of_site = site_of_sample;
   set_edge_weights<ConcurrencyTag>(sites, network.surface);
-  network.surface = voronoi_graph<ConcurrencyTag>(sites, network.surface);
+  const pcs::internal::Go_on go_on = [&](double f) { return progress(f); };
+  const auto part =
+      pcs::internal::part_of(go_on, internal::end_of_neighbors, internal::end_of_sample_graph);
+  network.surface = voronoi_graph<ConcurrencyTag>(sites, network.surface, part);
+  return progress(internal::end_of_sample_graph);
 }
 
 template <class ConcurrencyTag>
@@ -331,9 +348,8 @@ bool Sampled_body<ConcurrencyTag>::sample(const std::vector<Vec3>& sites,
   choose_number_of_samples(sites.size());
   choose_samples(sites);
   is_sampled = site_of_sample.size() < sites.size();
-  if (!is_sampled)
-    take_all_sites(sites, std::move(graph));
-  else if (!link_samples(sites, std::move(graph), progress))
+  if (!(is_sampled ? link_samples(sites, std::move(graph), progress)
+                   : take_all_sites(sites, std::move(graph), progress)))
     return false;
   network.rest.reserve(site_of_sample.size());
   for (const auto site : site_of_sample)

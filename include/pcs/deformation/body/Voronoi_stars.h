@@ -9,6 +9,7 @@
 #include <pcs/deformation/model/Elastic_network.h>
 #include <pcs/internal/compress_rows.h>
 #include <pcs/internal/parallel.h>
+#include <pcs/internal/progress.h>
 #include <pcs/neighborhood/Proximity_graph.h>
 
 #include <Eigen/Core>
@@ -263,24 +264,27 @@ struct Star_neighbors
   }
 };
 
-/// Makes the stars of all points for which `is_made(i)`, and copies the others from `old`.
+/// Makes the stars of all points for which `is_made(i)`, and copies the others from `old`. If
+/// `go_on` stops, the result must not be used.
 template <class ConcurrencyTag, class Graph, class Is_made>
 Voronoi_stars voronoi_stars(const std::vector<Vec3>& points,
                             const std::vector<Tangent_plane>& planes,
                             const Graph& graph,
                             const Voronoi_stars& old,
-                            const Is_made& is_made)
+                            const Is_made& is_made,
+                            const pcs::internal::Go_on& go_on = {})
 {
-  constexpr std::size_t block_size = 512;
+  constexpr std::size_t block_size = 512, blocks_per_slice = 64;
   const std::size_t n = points.size();
   Voronoi_stars stars;
   stars.first.resize(n + 1);
   stars.is_loose.assign(n, 0);
   stars.is_changed.assign(n, 0);
   std::vector<std::vector<Voronoi_stars::Side>> sides((n + block_size - 1) / block_size);
-  pcs::internal::for_each_block<ConcurrencyTag>(
+  const bool is_complete = pcs::internal::for_each_block_while<ConcurrencyTag>(
       n,
       block_size,
+      blocks_per_slice,
       [&](std::size_t begin, std::size_t end) {
         Voronoi_star_maker make(points, planes);
         auto& out = sides[begin / block_size];
@@ -303,7 +307,10 @@ Voronoi_stars voronoi_stars(const std::vector<Vec3>& points,
           }
           stars.first[i + 1] = static_cast<std::uint32_t>(out.size() - before);
         }
-      });
+      },
+      [&](double f) { return pcs::internal::goes_on(go_on, f); });
+  if (!is_complete)
+    return Voronoi_stars();
   for (std::size_t i = 0; i < n; ++i)
     stars.first[i + 1] += stars.first[i];
   stars.side.reserve(stars.first.back());

@@ -8,6 +8,7 @@
 #include <pcs/deformation/body/Voronoi_stars.h>
 #include <pcs/deformation/model/Elastic_network.h>
 #include <pcs/internal/parallel.h>
+#include <pcs/internal/progress.h>
 #include <pcs/neighborhood/Proximity_graph.h>
 
 #include <boost/pending/disjoint_sets.hpp>
@@ -208,11 +209,14 @@ Weighted_graph star_graph(const Voronoi_stars& stars,
   is used. For clouds without a typical spacing, the proximity graph is returned unchanged.
 
   \param proximity weighted by `set_edge_weights()`; the result has the same components
+  \param go_on asked after parts of the work; if it returns `false`, the result is `proximity`
 
   O(n) for bounded degrees.
 */
 template <class ConcurrencyTag>
-Weighted_graph voronoi_graph(const std::vector<Vec3>& points, const Weighted_graph& proximity)
+Weighted_graph voronoi_graph(const std::vector<Vec3>& points,
+                             const Weighted_graph& proximity,
+                             const pcs::internal::Go_on& go_on = {})
 {
   using internal::Voronoi_stars;
   const std::size_t n = points.size();
@@ -223,13 +227,17 @@ Weighted_graph voronoi_graph(const std::vector<Vec3>& points, const Weighted_gra
     return proximity;
   const std::vector<internal::Tangent_plane> planes =
       internal::tangent_planes<ConcurrencyTag>(points, proximity);
-  Voronoi_stars stars =
-      internal::voronoi_stars<ConcurrencyTag>(points,
-                                              planes,
-                                              internal::Proximity_neighbors{proximity},
-                                              {},
-                                              [](std::size_t) { return true; });
+  Voronoi_stars stars = internal::voronoi_stars<ConcurrencyTag>(
+      points,
+      planes,
+      internal::Proximity_neighbors{proximity},
+      {},
+      [](std::size_t) { return true; },
+      pcs::internal::part_of(go_on, 0, 0.6));
   for (int pass = 1; pass < number_of_passes; ++pass) {
+    const double done = 0.6 + 0.06 * pass;
+    if (!pcs::internal::goes_on(go_on, done))
+      return proximity;
     const internal::Star_neighbors neighbors(stars, ConcurrencyTag());
     const auto is_made = [&](std::size_t i) {
       bool is_changed = stars.is_changed[i] != 0;
@@ -238,9 +246,16 @@ Weighted_graph voronoi_graph(const std::vector<Vec3>& points, const Weighted_gra
       });
       return is_changed && neighbors.is_doubtful[i] != 0;
     };
-    stars = internal::voronoi_stars<ConcurrencyTag>(points, planes, neighbors, stars, is_made);
+    stars =
+        internal::voronoi_stars<ConcurrencyTag>(points,
+                                                planes,
+                                                neighbors,
+                                                stars,
+                                                is_made,
+                                                pcs::internal::part_of(go_on, done, done + 0.06));
   }
-
+  if (!pcs::internal::goes_on(go_on, 0.9))
+    return proximity;
   const internal::Star_neighbors neighbors(stars, ConcurrencyTag());
   Weighted_graph graph = internal::star_graph<ConcurrencyTag>(stars, neighbors.graph, proximity);
   const double sum = pcs::internal::blocked_reduce<ConcurrencyTag>(

@@ -17,6 +17,7 @@
 #include <pcs/deformation/model/Node_targets.h>
 #include <pcs/deformation/solver/Elastic_solver.h>
 #include <pcs/internal/parallel.h>
+#include <pcs/internal/progress.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -56,13 +57,23 @@ public:
   /// \param finer the finer network, with nodes in spatial order
   /// \param component the component of each node of `finer`
   /// \param has_links whether closed surfaces have springs through their interior
+  /// \param go_on called between the steps of large levels; if it returns `false`, the level must
+  ///        not be used
   Coarse_level(const Elastic_network& finer,
                const std::vector<std::uint32_t>& component,
-               bool has_links)
+               bool has_links,
+               const pcs::internal::Go_on& go_on = {})
     : m_node_of_sample(octree_samples(finer.rest, finer.size() / coarsening_ratio))
   {
     constexpr std::size_t number_of_sample_neighbors = 4;
+    const auto is_stopped = [&] {
+      return finer.size() >= least_watched_rows && !pcs::internal::goes_on(go_on, 0);
+    };
+    if (is_stopped())
+      return;
     Sample_regions regions = grow_regions(finer.rest, finer.surface, m_node_of_sample);
+    if (is_stopped())
+      return;
     m_network.surface =
         sample_graph(finer.rest, finer.surface, m_node_of_sample, regions, m_weight_unit);
     m_links = link_by_regions<ConcurrencyTag>(finer.rest,
@@ -71,6 +82,8 @@ public:
                                               m_network.surface,
                                               number_of_sample_neighbors,
                                               Sample_weights::compact);
+    if (is_stopped())
+      return;
     m_sample_of_node = std::move(regions.sample_of_point);
     m_border_finder = Border_finder(finer.surface);
     for (const auto node : m_node_of_sample) {
@@ -80,6 +93,8 @@ public:
     set_areas<ConcurrencyTag>(m_component, m_network);
     if (has_links && m_network.size() <= largest_linked_network)
       m_network.links = interior_links<ConcurrencyTag>(m_network, m_component);
+    if (is_stopped())
+      return;
     rank_nodes(m_network);
   }
 
@@ -101,8 +116,11 @@ public:
                            m_constraints);
   }
 
-  /// Prepares `improve()`. Returns `false` if a matrix is singular.
-  bool factorize(const Elastic_network& finer, const Node_constraints& of_finer, double stiffness)
+  /// Prepares `improve()`. Returns `false` if a matrix is singular, or if `go_on` does.
+  bool factorize(const Elastic_network& finer,
+                 const Node_constraints& of_finer,
+                 double stiffness,
+                 const pcs::internal::Go_on& go_on = {})
   {
     const auto handle_of_node = [&](std::size_t node) {
       return of_finer.is_prescribed(node) ? of_finer.handle_of_node[node] : free_node;
@@ -121,7 +139,7 @@ public:
                                                                      handle_of_node,
                                                                      position},
         constraints);
-    return m_solver.constrain(m_bounded, std::move(constraints), stiffness);
+    return m_solver.constrain(m_bounded, std::move(constraints), stiffness, go_on);
   }
 
   /// Transfers the offsets of the nodes of handles with targets from the finer level.

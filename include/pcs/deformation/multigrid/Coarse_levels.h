@@ -36,14 +36,20 @@ public:
   /// \param finest the session's network, with nodes in spatial order
   /// \param component the component of each node of `finest`
   /// \param has_links whether closed surfaces have springs through their interior
-  Coarse_levels(const Elastic_network& finest, std::vector<std::uint32_t> component, bool has_links)
+  /// \param go_on called for large levels; if it returns `false`, the levels must not be used
+  Coarse_levels(const Elastic_network& finest,
+                std::vector<std::uint32_t> component,
+                bool has_links,
+                const pcs::internal::Go_on& go_on = {})
     : m_size_of_passes(finest.size())
   {
     const Elastic_network* finer = &finest;
     const std::vector<std::uint32_t>* of_finer = &component;
     bool is_linked = !finest.links.neighbor.empty();
     while (finer->size() >= smallest_coarsened_network) {
-      m_level.emplace_back(*finer, *of_finer, has_links);
+      m_level.emplace_back(*finer, *of_finer, has_links, go_on);
+      if (finer->size() >= least_watched_rows && !pcs::internal::goes_on(go_on, 1))
+        return;
       finer = &m_level.back().network();
       of_finer = &m_level.back().component();
       if (!is_linked && !finer->links.neighbor.empty()) {
@@ -55,16 +61,24 @@ public:
   }
 
   /// Transfers the constraints of the session's network to all levels and factorises. Returns
-  /// `false` if a matrix is singular.
-  bool constrain(const Elastic_network& finest, const Node_constraints& of_finest, double stiffness)
+  /// `false` if a matrix is singular, or if `go_on` does.
+  bool constrain(const Elastic_network& finest,
+                 const Node_constraints& of_finest,
+                 double stiffness,
+                 const pcs::internal::Go_on& go_on)
   {
     bool is_regular = true;
+    const auto count = static_cast<double>(m_level.size());
     const Elastic_network* finer = &finest;
     const Node_constraints* of_finer = &of_finest;
     for (std::size_t l = 0; l < m_level.size(); ++l) {
+      const double begin = static_cast<double>(l) / count;
+      if (finer->size() >= least_watched_rows && !go_on(begin))
+        return false;
       m_level[l].constrain(*of_finer);
+      const auto part = pcs::internal::part_of(go_on, begin, begin + 1 / count);
       if (l >= m_first)
-        is_regular = m_level[l].factorize(*finer, *of_finer, stiffness) && is_regular;
+        is_regular = m_level[l].factorize(*finer, *of_finer, stiffness, part) && is_regular;
       finer = &m_level[l].network();
       of_finer = &m_level[l].constraints();
     }

@@ -9,11 +9,13 @@
 #include <pcs/deformation/model/Elastic_options.h>
 #include <pcs/deformation/model/Harmonic_system.h>
 #include <pcs/internal/parallel.h>
+#include <pcs/internal/progress.h>
 
 #include <Eigen/SparseCore>
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -24,6 +26,10 @@ namespace deformation {
 /// which is a regularisation, has single precision below the diagonal; this changes positions by
 /// less than 1e-8 of the extent. [count]
 constexpr std::size_t most_exact_rows = 65536;
+
+/// Systems with fewer unknowns are factorised in milliseconds, without calls of the callback, so
+/// that the number of calls does not depend on the threads. [count]
+constexpr std::size_t least_watched_rows = 10000;
 
 /// Factors for the free and soft nodes, of three systems: the field of the handles, the positions,
 /// and the smoothing of deviations.
@@ -38,23 +44,20 @@ public:
   /// Returns `mu D` of a row, the weight of the best local rotation relative to the neighbours.
   double fit_weight(std::size_t row) const { return m_fit_weight[row]; }
 
-  /// Returns `false` if a matrix is singular (a free component without handle).
+  /// Returns `false` if a matrix is singular (a free component without handle), or if `go_on` does.
+  /// The factors must not be used then.
   template <class ConcurrencyTag>
-  bool
-  factorize(const Elastic_network& network, const Node_constraints& constraints, double stiffness)
+  bool factorize(const Elastic_network& network,
+                 const Node_constraints& constraints,
+                 double stiffness,
+                 const pcs::internal::Go_on& go_on = {})
   {
     m_rows = Free_rows(constraints);
+    const bool is_watched = go_on && m_rows.size() >= least_watched_rows;
+    const pcs::internal::Go_on asks = is_watched ? go_on : pcs::internal::Go_on();
     m_has_links = !network.links.neighbor.empty();
-    m_fit_weight.resize(m_rows.size());
-    std::vector<double> soft(m_rows.size(), 0), smoothing(m_rows.size(), 0);
-    for (std::size_t r = 0; r < m_rows.size(); ++r) {
-      const std::size_t i = m_rows.node_of_row[r];
-      const double degree = node_degree(network.surface, i);
-      if (constraints.is_soft(i))
-        soft[r] = constraints.soft_weight(i, degree);
-      m_fit_weight[r] = default_fit_weight / stiffness * relative_area(network, i) * degree;
-      smoothing[r] = soft[r] + m_fit_weight[r];
-    }
+    std::vector<double> soft, smoothing;
+    weigh_rows(network, constraints, stiffness, soft, smoothing);
     const auto assemble = [&](std::vector<const Weighted_graph*> graphs,
                               const std::vector<double>& extra) {
       return linear_algebra::free_laplacian(graphs, m_rows.row_of_node, m_rows.node_of_row, extra);
@@ -64,40 +67,108 @@ public:
       return linear_algebra::free_row_sums(graphs, m_rows.row_of_node, m_rows.node_of_row, extra);
     };
     const Weighted_graph* surface = &network.surface;
-    bool field_ok = false, smoothing_ok = false, position_ok = true;
+    bool position_ok = true;
     const Eigen::SparseMatrix<double> of_field = assemble({surface}, soft);
     std::shared_ptr<linear_algebra::Cholesky_pattern> pattern;
-    pcs::internal::invoke_both<ConcurrencyTag>(
+    invoke_both<ConcurrencyTag>(
+        asks,
         [&] {
           pattern = std::make_shared<linear_algebra::Cholesky_pattern>(
               of_field,
-              rank_of_rows(network.surface_rank, m_rows));
+              rank_of_rows(network.surface_rank, m_rows),
+              pcs::internal::part_of(asks, 0, 0.2));
         },
         [&] {
           if (m_has_links)
-            position_ok = m_link.factorize(assemble({surface, &network.links}, soft),
-                                           rank_of_rows(network.rank, m_rows),
-                                           row_sums({surface, &network.links}, soft));
+            position_ok = factorize_links(assemble({surface, &network.links}, soft),
+                                          rank_of_rows(network.rank, m_rows),
+                                          row_sums({surface, &network.links}, soft),
+                                          pcs::internal::part_of(asks, 0.2, 0.6));
         });
-    const auto factorize_field = [&] {
-      field_ok = m_field.factorize(of_field, pattern, row_sums({surface}, soft));
-    };
-    const auto factorize_smoothing = [&] { // the matrices differ in their diagonals only
-      smoothing_ok = m_smoothing.factorize(of_field, pattern, row_sums({surface}, smoothing));
-    };
-    if (m_rows.size() <= most_exact_rows)
-      pcs::internal::invoke_both<ConcurrencyTag>(factorize_field, factorize_smoothing);
-    else { // one after the other, so that only one of them has double precision at a time
-      m_field = linear_algebra::Sparse_cholesky();
-      factorize_smoothing();
-      m_smoothing.round_to_single();
-      factorize_field();
-    }
+    if (!pattern->is_complete() || !position_ok)
+      return false;
+    const bool is_regular = factorize_surface<ConcurrencyTag>(
+        of_field,
+        pattern,
+        [&] { return row_sums({surface}, soft); },
+        [&] { return row_sums({surface}, smoothing); },
+        asks);
     pattern->forget_places();
-    return field_ok && smoothing_ok && position_ok;
+    return is_regular;
   }
 
 private:
+  /// Runs two functions, and asks `asks`, unless it is empty, while it waits.
+  template <class ConcurrencyTag, class F, class G>
+  static void invoke_both(const pcs::internal::Go_on& asks, const F& f, const G& g)
+  {
+    if (asks)
+      pcs::internal::invoke_both<ConcurrencyTag>(f, g, [&] { asks(0); });
+    else
+      pcs::internal::invoke_both<ConcurrencyTag>(f, g);
+  }
+
+  /// Finds the weights of the springs of soft nodes, and these weights with those of the rotations.
+  void weigh_rows(const Elastic_network& network,
+                  const Node_constraints& constraints,
+                  double stiffness,
+                  std::vector<double>& soft,
+                  std::vector<double>& smoothing)
+  {
+    m_fit_weight.resize(m_rows.size());
+    soft.assign(m_rows.size(), 0);
+    smoothing.assign(m_rows.size(), 0);
+    for (std::size_t r = 0; r < m_rows.size(); ++r) {
+      const std::size_t i = m_rows.node_of_row[r];
+      const double degree = node_degree(network.surface, i);
+      if (constraints.is_soft(i))
+        soft[r] = constraints.soft_weight(i, degree);
+      m_fit_weight[r] = default_fit_weight / stiffness * relative_area(network, i) * degree;
+      smoothing[r] = soft[r] + m_fit_weight[r];
+    }
+  }
+
+  /// Factorises the matrices of the field and of the smoothing, which differ in their diagonals
+  /// only. \param field_sums, smoothing_sums return the sums of their rows
+  template <class ConcurrencyTag, class Field_sums, class Smoothing_sums>
+  bool factorize_surface(const Eigen::SparseMatrix<double>& a,
+                         const std::shared_ptr<const linear_algebra::Cholesky_pattern>& pattern,
+                         const Field_sums& field_sums,
+                         const Smoothing_sums& smoothing_sums,
+                         const pcs::internal::Go_on& asks)
+  {
+    bool field_ok = false, smoothing_ok = false;
+    const auto factorize_field = [&] {
+      field_ok = m_field.factorize(a, pattern, field_sums(), pcs::internal::part_of(asks, 0.6, 1));
+    };
+    const auto factorize_smoothing = [&] {
+      smoothing_ok = m_smoothing.factorize(a,
+                                           pattern,
+                                           smoothing_sums(),
+                                           pcs::internal::part_of(asks, 0.2, 0.6));
+    };
+    if (m_rows.size() <= most_exact_rows)
+      invoke_both<ConcurrencyTag>(asks, factorize_field, factorize_smoothing);
+    else { // one after the other, so that only one of them has double precision at a time
+      m_field = linear_algebra::Sparse_cholesky();
+      factorize_smoothing();
+      if (!smoothing_ok)
+        return false;
+      m_smoothing.round_to_single();
+      factorize_field();
+    }
+    return field_ok && smoothing_ok;
+  }
+
+  bool factorize_links(const Eigen::SparseMatrix<double>& a,
+                       const std::vector<std::uint32_t>& rank,
+                       const std::vector<double>& row_sums,
+                       const pcs::internal::Go_on& go_on)
+  {
+    const auto pattern = std::make_shared<const linear_algebra::Cholesky_pattern>(a, rank, go_on);
+    return pattern->is_complete() && m_link.factorize(a, pattern, row_sums, go_on);
+  }
+
   /// Returns the area of a node in units of a node of the reference network.
   static double relative_area(const Elastic_network& network, std::size_t node)
   {

@@ -57,9 +57,12 @@ public:
   Node_targets& targets() { return m_shape.targets(); }
   const Node_targets& targets() const { return m_shape.targets(); }
   void link_offsets(std::vector<Vec3>& offsets) { m_shape.link_offsets(offsets); }
-  bool constrain(const Elastic_network& network, Node_constraints constraints, double stiffness)
+  bool constrain(const Elastic_network& network,
+                 Node_constraints constraints,
+                 double stiffness,
+                 const pcs::internal::Go_on& go_on = {})
   {
-    return m_shape.constrain(network, std::move(constraints), stiffness);
+    return m_shape.constrain(network, std::move(constraints), stiffness, go_on);
   }
 
   /// Solves for one transformation per handle, starting from the rest shape. If the guess is known
@@ -76,6 +79,8 @@ public:
     const bool has_offsets = has_passes && !guess.link_offsets.empty() && !m_shape.has_links();
     m_shape.begin(transforms, options, false, has_offsets ? &guess.link_offsets : nullptr);
     m_mixing.restart();
+    if (is_stopped(progress, result))
+      return result;
     m_smooth.assign(network().size(), Vec3::Zero());
     m_best_smooth.assign(network().size(), Vec3::Zero());
     set_held_deviations();
@@ -87,6 +92,8 @@ public:
     if (result.is_far_from_field || !targets().empty())
       m_shape.turn(m_smooth);
     m_shape.place(true);
+    if (is_stopped(progress, result))
+      return result;
     result.energy = result.initial_energy = m_shape.fit_and_measure(true);
     make_passes(options, progress, result.is_far_from_field ? nullptr : &guess, result);
     return result;
@@ -120,6 +127,15 @@ public:
 
 private:
   const Free_rows& rows() const { return m_shape.rows(); }
+
+  /// Asks between the steps before the first iteration, which take long for large networks.
+  bool is_stopped(pcs::internal::Progress& progress, Elastic_result& result) const
+  {
+    if (rows().size() < least_watched_rows || progress(0))
+      return false;
+    result.status = Status::cancelled;
+    return true;
+  }
 
   void set_held_deviations()
   {

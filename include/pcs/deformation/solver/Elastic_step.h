@@ -20,6 +20,7 @@
 #include <pcs/deformation/solver/measure_edges.h>
 #include <pcs/deformation/solver/rotation_field.h>
 #include <pcs/internal/parallel.h>
+#include <pcs/internal/progress.h>
 
 #include <Eigen/Core>
 
@@ -65,14 +66,18 @@ public:
   }
 
   /// Factorises for the given constraints. The network must outlive its use here. Returns `false`
-  /// if a matrix is singular (a free component without handle).
-  bool constrain(const Elastic_network& network, Node_constraints constraints, double stiffness)
+  /// if a matrix is singular (a free component without handle), or if `go_on` does.
+  bool constrain(const Elastic_network& network,
+                 Node_constraints constraints,
+                 double stiffness,
+                 const pcs::internal::Go_on& go_on)
   {
     m_network = &network;
     m_constraints = std::move(constraints);
     m_targets.clear();
     m_loads.clear();
-    const bool is_regular = m_factors.factorize<ConcurrencyTag>(network, m_constraints, stiffness);
+    const bool is_regular =
+        m_factors.factorize<ConcurrencyTag>(network, m_constraints, stiffness, go_on);
     m_position = network.rest;
     m_frame.assign(network.size(), Eigen::Matrix3d::Identity());
     return is_regular;
