@@ -28,6 +28,7 @@ RUNS = [
     ("Deformation: all points as samples, beside CGAL", "bench_full_resolution", []),
     ("Deformation: known answers, beside CGAL", "bench_deformation_quality", ["--peers"]),
     ("Deformation: linear solvers, beside Eigen and CHOLMOD", "bench_linear_solvers", []),
+    ("Deformation: graphs, beside Boost.Graph", "bench_graphs", []),
     ("Deformation: neighbour links", "bench_neighbor_links", []),
     ("Nonrigid registration", "bench_fit_point_set", ["--data", "{data}"]),
     ("Gaussian splats", "bench_splats", []),
