@@ -810,7 +810,6 @@ BOOST_AUTO_TEST_CASE(a_cancelled_deformation_can_be_repeated)
 /// are samples.
 struct Large_session
 {
-  static constexpr std::size_t side = 105;
   static constexpr double end_of_factorization = 0.5; ///< fraction of `deform()`
   Points points, rest;
   int calls_left = -1; ///< before the answer `false`, or before an exception; negative: no limit
@@ -825,7 +824,7 @@ struct Large_session
       throw std::range_error("enough");
     return false;
   };
-  static Points square()
+  static Points square(std::size_t side)
   {
     Points p;
     for (std::size_t i = 0; i < side * side; ++i) {
@@ -836,11 +835,12 @@ struct Large_session
   }
   auto parameters() const
   {
-    return pcs::parameters::number_of_samples(side * side).callback(callback);
+    return pcs::parameters::number_of_samples(points.size()).callback(callback);
   }
   pcs::Point_set_deformation<Points, decltype(pcs::parameters::number_of_samples(1))> session;
 
-  Large_session() : points(square()), rest(points), session(points, parameters())
+  explicit Large_session(std::size_t side = 105)
+    : points(square(side)), rest(points), session(points, parameters())
   {
     for (std::size_t k = 0; k < side; ++k) {
       row[0].push_back(k);
@@ -851,6 +851,30 @@ struct Large_session
     session.set_translation(session.add_handle(row[1]), Vec3(.1, .1, .5));
   }
 };
+
+BOOST_AUTO_TEST_CASE(a_large_body_at_rest_can_be_written_restored_and_applied)
+{
+  Large_session s(260); // without maps at rest
+  const auto at_rest = s.session.snapshot();
+  BOOST_TEST(s.session.number_of_samples() == s.points.size());
+  Points others = {s.rest[7], s.rest[30000] + Vec3(0, 0, 1e-4)};
+  const Points others_at_rest = others;
+  s.session.apply(others);
+  BOOST_TEST((others == others_at_rest));
+  s.session.deform();
+  const Points deformed = s.points;
+  const auto snapshot = s.session.snapshot();
+  BOOST_TEST((deformed != s.rest));
+  s.session.reset();
+  BOOST_TEST((s.points == s.rest));
+  s.session.restore(snapshot);
+  BOOST_TEST((s.points == deformed));
+  s.session.restore(at_rest);
+  BOOST_TEST((s.points == s.rest));
+  s.session.restore(snapshot);
+  s.session.deform();
+  BOOST_TEST((s.points == deformed));
+}
 
 BOOST_AUTO_TEST_CASE(a_cancelled_factorisation_keeps_the_shape)
 {

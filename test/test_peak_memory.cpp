@@ -57,6 +57,9 @@ Tree tree_of(std::uint64_t seed)
   return tree;
 }
 
+/// Bytes per point of a pillar whose points are all samples.
+constexpr double most_without_sampling = 2100;
+
 /// Returns the largest number of bytes per point that `work()` allocates at a time.
 template <class Work>
 double peak(std::size_t number_of_points, const Work& work)
@@ -93,6 +96,27 @@ BOOST_AUTO_TEST_CASE(a_session_of_deformation)
   BOOST_TEST_MESSAGE("kept: " << kept << " bytes per point");
   BOOST_TEST(kept < 175);
   BOOST_TEST(most < 325);
+}
+
+BOOST_AUTO_TEST_CASE(a_session_without_sampling)
+{
+  constexpr std::size_t n = 100000;
+  std::vector<Point> points = pillar(n);
+  std::vector<std::size_t> foot, head;
+  for (std::size_t i = 0; i < n / 20; ++i) {
+    foot.push_back(i);
+    head.push_back(n - 1 - i);
+  }
+  const double most = peak(n, [&] {
+    const auto np = pcs::parameters::number_of_samples(n);
+    pcs::Point_set_deformation<std::vector<Point>, decltype(np), CGAL::Sequential_tag> session(
+        points,
+        np);
+    session.add_handle(foot);
+    session.set_rotation(session.add_handle(head), Kernel::Vector_3(0, 0, 1), 0.5);
+    session.deform();
+  });
+  BOOST_TEST(most < most_without_sampling);
 }
 
 BOOST_AUTO_TEST_CASE(a_skeleton)

@@ -81,7 +81,7 @@ std::size_t Session<ConcurrencyTag>::number_of_points() const
 template <class ConcurrencyTag>
 std::size_t Session<ConcurrencyTag>::number_of_samples() const
 {
-  return m_state->is_ready ? m_state->maps.size() : 0;
+  return m_state->is_ready ? m_state->body.network.size() : 0;
 }
 
 template <class ConcurrencyTag>
@@ -269,6 +269,7 @@ Moved_points<ConcurrencyTag> Session<ConcurrencyTag>::moved_points()
   const pcs::internal::Stage_timer timer(seconds);
   const std::vector<char>& is_written = internal::find_written_handles(s);
   const Upsampling::Block_motions motions = internal::block_motions(s, is_written);
+  internal::complete_maps(s);
   s.outlier_maps.read(s.body, s.maps);
   return {s.body,
           s.upsampling,
@@ -366,6 +367,7 @@ void Session<ConcurrencyTag>::prepare_carrying()
 {
   Session_state<ConcurrencyTag>& s = *m_state;
   internal::complete_transforms(s);
+  internal::complete_maps(s);
   s.outlier_maps.read(s.body, s.maps);
   if (s.carrier)
     return;

@@ -67,7 +67,7 @@ struct Session_state
   double last_energy = 0;    ///< of the solution
 
   // ---- the current shape; a cancelled solve does not change it
-  std::vector<Affine_map> maps;             ///< of the samples
+  std::vector<Affine_map> maps;             ///< of the samples; empty for large bodies at rest
   std::vector<Similarity> local_transforms; ///< of the handles, for these maps
   std::vector<Similarity> shape_transforms; ///< of the handles, in the caller's coordinates
   std::vector<std::shared_ptr<const Handle_targets>> shape_targets; ///< of the handles
@@ -132,10 +132,32 @@ void begin_rest_shape(Session_state<Tag>& s)
   s.rest_setting = s.setting;
 }
 
+/// Larger bodies, in which a frame takes a large part of a second, compute every map twice rather
+/// than to store it twice, and have no maps at rest. [count]
+constexpr std::size_t most_next_maps = 65536;
+
+/// Sets all maps to the identity.
+template <class Tag>
+void start_maps(Session_state<Tag>& s)
+{
+  if (s.body.network.size() <= most_next_maps)
+    s.maps.assign(s.body.network.size(), identity_map());
+  else
+    s.maps = std::vector<Affine_map>();
+}
+
+/// Provides the maps of a large body at rest, for output.
+template <class Tag>
+void complete_maps(Session_state<Tag>& s)
+{
+  if (s.maps.empty())
+    s.maps.assign(s.body.network.size(), identity_map());
+}
+
 template <class Tag>
 void put_samples_at_rest(Session_state<Tag>& s)
 {
-  s.maps.assign(s.maps.size(), identity_map());
+  start_maps(s);
   keep_rest(s);
 }
 

@@ -70,16 +70,11 @@ void prepare_points(Session_state<Tag>& s)
   s.body.links_of_site = Sample_links();
 }
 
-/// Larger bodies, in which a frame takes a large part of a second, compute every map twice rather
-/// than to store it twice. [count]
-constexpr std::size_t most_next_maps = 65536;
-
 template <class Tag>
 void prepare_samples(Session_state<Tag>& s, const pcs::internal::Go_on& go_on)
 {
-  s.maps.assign(s.body.network.size(), identity_map());
-  if (s.maps.size() <= most_next_maps)
-    s.next_maps = s.maps;
+  start_maps(s);
+  s.next_maps = s.maps;
   s.coarse = Coarse_levels<Tag>(s.body.network,
                                 s.body.component_of_sample(),
                                 s.body.options.do_preserve_volume,
@@ -185,7 +180,9 @@ Elastic_result solve_levels(Session_state<Tag>& s,
     const pcs::internal::Stage_timer timer(s.report.seconds.coarse_levels);
     guess = &s.coarse.solve(s.next_transforms, options, progress);
   }
-  return s.solver.solve(s.next_transforms, options, progress, *guess);
+  const Elastic_result result = s.solver.solve(s.next_transforms, options, progress, *guess);
+  s.coarse.forget_large_guess();
+  return result;
 }
 
 /// Solves from the last solution if `start` is warm and this solution is near, otherwise from the

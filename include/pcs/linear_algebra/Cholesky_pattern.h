@@ -101,7 +101,11 @@ public:
   }
 
   /// Frees the memory that only factorisations need. Solutions remain possible.
-  void forget_places() { place = std::vector<std::size_t>(); }
+  void forget_places()
+  {
+    place = std::vector<std::size_t>();
+    in_parent = std::vector<std::uint32_t>();
+  }
 
   std::size_t size() const { return new_of_old.size(); }
   std::size_t number_of_supernodes() const { return parent.size(); }
@@ -374,6 +378,7 @@ private:
       if (parent[s] != none)
         sibling[s] = std::exchange(child[parent[s]], s);
     }
+    row.shrink_to_fit();
     first_value.assign(1, 0);
     for (std::size_t s = 0; s < m; ++s) {
       const std::size_t values = (width(s) + number_of_rows_below(s)) * width(s);

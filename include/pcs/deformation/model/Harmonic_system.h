@@ -105,6 +105,10 @@ inline double node_degree(const Weighted_graph& graph, std::size_t i)
   return sum;
 }
 
+/// Memory of frames is kept for the next frame up to this number of nodes. A frame of a larger
+/// network takes so long that its memory is freed. [count]
+constexpr std::size_t most_kept_nodes = 65536;
+
 /// Right-hand sides and work vectors for the solves of one network. One solve at a time uses them.
 struct Solve_memory
 {

@@ -247,9 +247,6 @@ private:
         m_targets.set(s, mean[s]);
   }
 
-  /// Frames of larger levels take so long that memory is not kept for the next one. [count]
-  static constexpr std::size_t most_kept_values = 65536;
-
   void to_finer(std::vector<Vec3>& values)
   {
     m_fine.assign(m_sample_of_node.size(), Vec3::Zero());
@@ -258,7 +255,7 @@ private:
         if (m_links.sample[b] != no_sample)
           m_fine[i] += static_cast<double>(m_links.weight[b]) * values[m_links.sample[b]];
     });
-    if (m_fine.size() <= most_kept_values)
+    if (m_fine.size() <= most_kept_nodes)
       values.assign(m_fine.begin(), m_fine.end()); // reuses the memory of both
     else {
       values.swap(m_fine);

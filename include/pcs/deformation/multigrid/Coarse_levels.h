@@ -13,6 +13,7 @@
 #include <pcs/deformation/multigrid/Coarse_level.h>
 #include <pcs/internal/progress.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -119,6 +120,13 @@ public:
       else
         m_level[l].carry(guess);
     return guess;
+  }
+
+  /// Frees the memory of the guess of a large network after its use.
+  void forget_large_guess()
+  {
+    if (std::max(m_guess.deviations.size(), m_guess.link_offsets.size()) > most_kept_nodes)
+      m_guess = Deviation_guess();
   }
 
   /// Whether a coarse level has links that the session's network lacks.

@@ -96,6 +96,7 @@ public:
       return result;
     result.energy = result.initial_energy = m_shape.fit_and_measure(true);
     make_passes(options, progress, result.is_far_from_field ? nullptr : &guess, result);
+    finish();
     return result;
   }
 
@@ -122,11 +123,23 @@ public:
     if (!(result.energy <= highest_energy))
       return false;
     make_passes(options, progress, nullptr, result);
+    finish();
     return true;
   }
 
 private:
   const Free_rows& rows() const { return m_shape.rows(); }
+
+  /// Frees the memory of a large network that only iterations need.
+  void finish()
+  {
+    m_shape.finish();
+    if (network().size() <= most_kept_nodes)
+      return;
+    m_mixing = Anderson_mixing<ConcurrencyTag>();
+    for (std::vector<Vec3>* v : {&m_plain, &m_state, &m_image})
+      *v = std::vector<Vec3>();
+  }
 
   /// Asks between the steps before the first iteration, which take long for large networks.
   bool is_stopped(pcs::internal::Progress& progress, Elastic_result& result) const

@@ -232,6 +232,17 @@ public:
     m_position_solver.link_offsets(state(), *m_transforms, m_targets, m_factors, offsets, m_memory);
   }
 
+  /// Frees the memory of a large network that only iterations need.
+  void finish()
+  {
+    if (m_network->size() <= most_kept_nodes)
+      return;
+    m_memory = Solve_memory();
+    for (std::vector<Vec3>* v : {&m_deviation, &m_kept_position, &m_kept_deviation, &m_ungrown})
+      *v = std::vector<Vec3>();
+    m_kept_rotation = decltype(m_kept_rotation)();
+  }
+
   /// \name Stored States
   /// @{
 

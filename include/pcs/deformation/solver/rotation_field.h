@@ -155,6 +155,8 @@ private:
       if (length > 1e-12)
         field[i].coeffs() = m_value4[i] / length;
     });
+    if (field.size() > most_kept_nodes)
+      m_rhs4 = m_work4 = m_value4 = std::vector<Vec4>();
   }
 
   void blend_stage(const std::vector<Similarity>& transforms,
@@ -178,6 +180,8 @@ private:
       const std::size_t i = m_rows->node_of_row[r];
       field[i] = (rotation_exp(m_value3[i]) * field[i]).normalized();
     });
+    if (field.size() > most_kept_nodes)
+      m_value3 = std::vector<Vec3>();
   }
 
   void intrinsic_step(std::vector<Quaternion>& field)

@@ -37,7 +37,7 @@ has_sample_beside(const Weighted_graph& graph, std::size_t sample, std::size_t n
 /// \param transforms of the handles, in the coordinates of the network
 /// \param targets offsets of the nodes of handles with targets; may be empty
 /// \param rest of the samples [L]
-/// \param maps one for each sample
+/// \param maps one for each sample, or empty before the call
 /// \param next memory for as many maps, or empty to save it: then every map is computed twice
 /// \param are_finite workspace
 /// \return whether all maps are finite; otherwise, `maps` is unchanged
@@ -57,7 +57,7 @@ bool read_maps(const Elastic_state& state,
       return 1;
     }
     const bool is_rigid = state.constraints.is_prescribed(s);
-    const bool is_measured = !is_rigid && has_sample_beside(state.network.surface, s, maps.size());
+    const bool is_measured = !is_rigid && has_sample_beside(state.network.surface, s, rest.size());
     Eigen::Matrix3d a = is_measured ? state.deformation_gradient(s) : state.frame[s];
     // A prescribed map is bitwise that of the handle, unless this has targets.
     Vec3 t;
@@ -73,7 +73,7 @@ bool read_maps(const Elastic_state& state,
     return a.allFinite() && t.allFinite() ? 1 : 0;
   };
   const int is_finite = pcs::internal::blocked_reduce<ConcurrencyTag>(
-      maps.size(),
+      rest.size(),
       1,
       [&](std::size_t s) {
         Affine_map map;
@@ -84,10 +84,11 @@ bool read_maps(const Elastic_state& state,
       are_finite);
   if (is_finite != 1)
     return false;
-  if (next.empty())
+  if (next.empty()) {
+    maps.resize(rest.size());
     pcs::internal::for_each_index<ConcurrencyTag>(maps.size(),
                                                   [&](std::size_t s) { read(s, maps[s]); });
-  else
+  } else
     maps.swap(next);
   return true;
 }
