@@ -228,7 +228,7 @@ private:
 /// thread. While this thread waits for the second one, it calls `while_waiting()` every 10 ms.
 /// Exceptions of all three are rethrown after both functions have ended.
 template <class ConcurrencyTag, class F, class G, class While_waiting>
-void invoke_both(const F& f, const G& g, const While_waiting& while_waiting)
+void invoke_both(const F& f, const G& g, [[maybe_unused]] const While_waiting& while_waiting)
 {
   if constexpr (is_parallel<ConcurrencyTag>()) {
 #if PCS_HAS_TBB
