@@ -5,6 +5,7 @@
 #include <pcs/Orl_shape_space.h>
 #include <pcs/mean_tree.h>
 #include <support/drawn.h>
+#include <support/exceptions.h>
 #include <support/orl_families.h>
 
 #include <boost/test/unit_test.hpp>
@@ -128,6 +129,24 @@ BOOST_AUTO_TEST_CASE(radii_stay_positive_beyond_the_inputs)
       BOOST_TEST(x.radius[e] > 0);
     }
   BOOST_TEST(number_there > 10u);
+}
+
+BOOST_AUTO_TEST_CASE(weights_and_steps_without_a_finite_result_are_refused)
+{
+  const Family space(2);
+  const auto refuses = [&](const std::vector<double>& weights, const char* text) {
+    BOOST_CHECK_EXCEPTION(pcs::weighted_mean(space, weights),
+                          pcs::Invalid_input,
+                          pcs_test::message_has(text));
+  };
+  refuses({1}, "1 weights for 2 trees");
+  refuses({1, HUGE_VAL}, "a weight is inf");
+  refuses({1, -1}, "the sum of the weights must be positive");
+  refuses({1.5e308, 1.5e308}, "the weights are too large: their sum is not finite");
+  BOOST_CHECK_EXCEPTION(
+      pcs::parallel_displacement(space, space.tree(0), space.tree(0), space.tree(1), 1e308),
+      pcs::Invalid_input,
+      pcs_test::message_has("lengths that are no finite numbers"));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

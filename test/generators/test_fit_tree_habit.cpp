@@ -250,6 +250,9 @@ BOOST_AUTO_TEST_CASE(bad_trees_and_parameters_are_refused)
   add_edge(3, 9, tree);
   refuses({tree}, defaults, "more than one parent");
   tree = grown(pcs::fruit_habit(), 1);
+  add_edge(9, tree[boost::graph_bundle].root, tree);
+  refuses({tree}, defaults, "its root has a parent");
+  tree = grown(pcs::fruit_habit(), 1);
   refuses({tree}, np::smallest_radius(-1.0), "smallest_radius");
   refuses({tree}, np::smallest_radius(1.0), "not thinner than `smallest_radius`");
   refuses({tree}, np::number_of_simulations(5), "number_of_simulations");

@@ -373,6 +373,7 @@ BOOST_AUTO_TEST_CASE(senseless_scanners_are_refused_and_name_the_value)
   refuses([&](auto& s) { s.range_noise = -1; }, "range_noise");
   refuses([&](auto& s) { s.outlier_share = nan; }, "outlier_share");
   refuses([&](auto& s) { s.voxel_size = -1; }, "voxel_size");
+  refuses([&](auto& s) { s.voxel_size = 1e-17; }, "`voxel_size` is too small for this tree");
   refuses([&](auto& s) { s.wind = nan; }, "wind");
   refuses([&](auto& s) { s.positions = {{0, nan, 0}}; }, "positions");
   refuses([&](auto& s) { s.posts = {{0, 0, 0, 1}}; }, "posts");
