@@ -30,8 +30,7 @@ public:
     T value{};
     const std::string_view word = next();
     if (word.empty() || parse_number(word, value) != Parse_result::ok)
-      m_file.fail_at_line(std::string("expected ") + what + ", found " +
-                          (word.empty() ? "the end of the file" : in_quotes(word)));
+      m_file.fail_at_line(std::string("expected ") + what + ", found " + found(word));
     return value;
   }
 
@@ -63,7 +62,7 @@ public:
   {
     const std::string_view word = next();
     if (word != text)
-      m_file.fail_at_line("expected '" + std::string(text) + "', found " + in_quotes(word));
+      m_file.fail_at_line("expected '" + std::string(text) + "', found " + found(word));
   }
 
   /// Reads the next word if it is `text`, and returns whether it is.
@@ -88,6 +87,11 @@ public:
   [[noreturn]] void fail(const std::string& what) const { m_file.fail_at_line(what); }
 
 private:
+  static std::string found(std::string_view word)
+  {
+    return word.empty() ? "the end of the file" : in_quotes(word);
+  }
+
   std::string_view next()
   {
     if (!m_pushed_back.empty()) {
