@@ -1042,6 +1042,22 @@ BOOST_AUTO_TEST_CASE(sections_keep_their_size_where_virtual_edges_shrink_them)
   BOOST_TEST(std::hypot(points[0].x(), points[0].y()) < 0.75);
 }
 
+BOOST_AUTO_TEST_CASE(normals_without_a_direction_are_refused)
+{
+  using Oriented = std::pair<Point, Kernel::Vector_3>;
+  const auto maps = pcs::parameters::point_map(CGAL::First_of_pair_property_map<Oriented>())
+                        .normal_map(CGAL::Second_of_pair_property_map<Oriented>());
+  const auto tree = pcs_test::make_small_tree<Kernel>();
+  std::vector<Oriented> scan(3, Oriented(Point(0, 0, 1), Kernel::Vector_3(0, 0, 1)));
+  for (const double z : {0.0, std::numeric_limits<double>::infinity()}) {
+    scan[1].second = Kernel::Vector_3(0, 0, z);
+    pcs::Orl_shape_space<> space;
+    BOOST_CHECK_EXCEPTION(space.add(tree, scan, maps),
+                          pcs::Invalid_input,
+                          pcs_test::message_has("the normal of point 1 is null or not finite"));
+  }
+}
+
 BOOST_AUTO_TEST_CASE(normals_follow_their_edges)
 {
   const Tree a = random_tree(21, 3, 2);
