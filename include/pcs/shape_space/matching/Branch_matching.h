@@ -113,7 +113,7 @@ public:
     const Matching_key question(start_1, start_2, rotation * m_rotation.transpose());
     if (const double* const cost = m_simple.find(question))
       return *cost;
-    for (const std::size_t k : {1, 0})
+    for (const std::size_t k : {1u, 0u})
       if (const Result* const answer = m_known[k].find(question))
         return *answer ? (*answer)->cost : std::numeric_limits<double>::infinity();
     return m_energy.least_cost(start_1, start_2, question.rotation() * m_rotation);
