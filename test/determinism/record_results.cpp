@@ -6,11 +6,15 @@
 #include "Results.h"
 #include <support/threads.h>
 
+#include <cstddef>
 #include <cstdlib>
 #include <exception>
 #include <fstream>
 #include <iomanip>
 #include <iostream>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 namespace {
 
