@@ -395,8 +395,8 @@ BOOST_AUTO_TEST_CASE(turning_and_moving_both_trees_turns_and_moves_the_path)
       for (std::size_t k = 0; k < one.size(); ++k)
         is_same = is_same && one[k].tip == two[k].tip;
       BOOST_TEST(is_same);
-      // coordinates near 5e6 are rounded to 1e-9
-      const double tolerance = seed < 9 ? 1e-10 : 1e-7, d = space.distance(0, 1);
+      // coordinates near 5e6 are rounded to 1e-9; the directions of short edges amplify rounding
+      const double tolerance = seed < 9 ? 1e-9 : 1e-7, d = space.distance(0, 1);
       BOOST_TEST(std::abs(other.distance(0, 1) - scale * d) <= tolerance * scale * d);
       std::vector<Point> points, moved_points;
       space.points(space.geodesic(0, 1, 0.3), points);

@@ -37,23 +37,25 @@ struct Matching_weights
 {
   Branch_growth growth = Branch_growth::any; ///< for two trees; larger families stretch branches
   double curve = 1;                          ///< of the elastic energy of two branches [-]
-  double position = 1;                       ///< of the distance of attachments, in units of the
+  double position = 1.6;                     ///< of the distance of attachments, in units of the
                                              ///< branches' lengths [-]
-  double half_cost_distance = 1;   ///< distance of attachments, as a fraction of the parent's
-                                   ///< length, whose cost is halved by saturation [-]
-  double unmatched = 0.5;          ///< of the length of an unmatched subtree [-]
-  double length = 1;               ///< of a difference of lengths, in units of `unmatched` [-]
-  double rotation = 0.2;           ///< of the rotation of a branch relative to its parent [-]
-  double children = 1;             ///< of child directions in the estimate of this rotation [-]
-  double inherited_rotation = 0.1; ///< of the parent's rotation in the same estimate [-]
+  double half_cost_distance = 1; ///< distance of attachments, as a fraction of the parent's
+                                 ///< length, whose cost is halved by saturation [-]
+  double unmatched = 0.2;        ///< of the length of an unmatched subtree [-]
+  double length = 1;             ///< of a difference of lengths, in units of `unmatched` [-]
+  //! of the rotation of a branch relative to its parent [-]. At most half of `unmatched`, so that a
+  //! straight branch remains matched however far it is rotated
+  double rotation = 0.1;
+  double children = 0;              ///< of child directions in the estimate of this rotation [-]
+  double inherited_rotation = 0.05; ///< of the parent's rotation in the same estimate [-]
   bool is_rotation_inherited =
       true; ///< whether rotations of parents are passed on to their children
   //! whether the members of a pair or whorl, such as opposite branches, have partners in one whorl,
   //! if both parents are arranged in whorls and have at most 512 children. Trees on a path then
   //! keep this arrangement
   bool do_keep_whorls = true;
-  //! the published energy: no rotations, no whorls, `unmatched` is 1, positions in units of
-  //! the parent's length
+  //! the published energy: no rotations, no whorls, `unmatched` and `position` are 1, positions in
+  //! units of the parent's length
   bool is_published = false;
   double fork_ratio = default_fork_ratio;       ///< see `default_fork_ratio` [-]
   double trunk_fork_ratio = default_fork_ratio; ///< for the trunk, if smaller [-]

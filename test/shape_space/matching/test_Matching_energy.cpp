@@ -128,7 +128,7 @@ BOOST_AUTO_TEST_CASE(bounds_are_below_what_curves_cost)
   for (std::size_t p = 0; p < energy.paths(0).paths.size(); ++p)
     for (std::size_t q = p % 3; q < energy.paths(1).paths.size(); q += 3) {
       const Matching_energy::Trial trial = energy.match_curves(p, q, carried);
-      const Eigen::Matrix3d turned = energy.turn(trial, {}, {}, carried, 1);
+      const Eigen::Matrix3d turned = energy.turn(trial, {}, {}, carried, 1, 1);
       BOOST_TEST(energy.least_energy(p, q, carried) <=
                  energy.turned_energy(trial, carried, turned) + 1e-12);
       BOOST_TEST(rigid.least_energy(p, q, carried) <=

@@ -166,8 +166,8 @@ public:
           return nullptr;
         const double limit = best ? trunk_slack * best->cost : trunk_slack * most_cost;
         if (Result result = match_children(trials[k], rotation, limit)) {
-          order.emplace_back(result->cost, k);
-          if (!best || result->cost < best->cost)
+          order.emplace_back(rounded(result->cost), k);
+          if (!best || result->cost < below(best->cost))
             best = std::move(result);
         }
       }
@@ -181,7 +181,8 @@ public:
     for (Trial& trial : trials) {
       if (is_stopped())
         return nullptr;
-      if (Result result = match_children(std::move(trial), rotation, best ? best->cost : most_cost))
+      if (Result result =
+              match_children(std::move(trial), rotation, best ? below(best->cost) : most_cost))
         best = std::move(result);
     }
     return best ? completed(*best) : nullptr;
@@ -194,6 +195,12 @@ private:
   static constexpr std::size_t most_at_once = 512; // children that are assigned at a time
   static constexpr double trunk_slack = 1.05;      // relative error of the cost with one trial
   static constexpr double unknown = -1;            // cost that was not computed
+  static constexpr double same = 1e-12;            // costs that differ by less are equal
+
+  /// Returns the largest cost that is less than `cost` by more than rounding. Of matchings of the
+  /// same cost, the first one is kept, so that the result does not depend on rounding.
+  static double below(double cost) { return cost - same; }
+  static double rounded(double cost) { return std::round(cost / same); }
 
   /// The cost of two children, infinite if they cost as much as unmatched [-], and their matching.
   /// The matching of a simple pair is made at the end of the search, see `completed()`.
@@ -220,7 +227,7 @@ private:
     Result best;
     for (Trial& trial : find_trials(start_1, start_2, turned, limit, m_effort))
       if (Result result = match_children(std::move(trial), turned, limit)) {
-        limit = result->cost;
+        limit = below(result->cost);
         best = std::move(result);
       }
     known.keep(question, best);
@@ -364,7 +371,7 @@ private:
         order.push_back({cost, p1, p2});
       }
     std::stable_sort(order.begin(), order.end(), [](const Candidate& x, const Candidate& y) {
-      return x.cost < y.cost;
+      return rounded(x.cost) < rounded(y.cost);
     });
     for (std::size_t k = 0; k < order.size() && k < most; ++k)
       take(order[k].p1, order[k].p2);

@@ -53,15 +53,16 @@ namespace shape_space {
           + children sum_{(i, j)} sqrt(w_i w_j) v_i v_j^T
 
   with the unit tangents `u` and mean directions `v`. The pairs of the last sum are assigned by
-  quick costs, for which a subtree is one straight branch of length `w`. Without this sum and
-  `sqrt(g')`, and for `inherited_rotation = rotation / 2`, `R` minimises the first term of `C`.
+  quick costs, for which a subtree is one straight branch of length `w`; by default, it has no
+  weight, since wrong pairs spoil the rotation. Without this sum and `sqrt(g')`, and for
+  `inherited_rotation = rotation / 2`, `R` minimises the first term of `C`.
 
   - Growth at tips: `min(l_i, l_j)` replaces the mean. The longer branch is compared up to the
     length of the shorter one; the length of its remainder, with the children there, is unmatched.
   - Without `is_rotation_inherited`: `R = R_p`, the terms of `rotation` and `length` vanish, and the
     elastic energy is `L1 + L2 - 2 L M` instead of `2 L (1 - M)`.
   - `is_published` (after section 4.7 of \cite aiteanu2022): the same, with `unmatched = 1` and
-    `P_ij = position L1 d^2`.
+    `P_ij = L1 d^2`.
 
   A pair of curves of n samples costs O(n^2), an assignment of k children O(k^3).
 */
@@ -196,7 +197,7 @@ public:
   {
     const double d = std::abs(s1 - s2);
     if (m_weights.is_published)
-      return m_weights.position * parent_length * d * d;
+      return parent_length * d * d;
     // bounded, so that positions alone do not leave branches of different species unmatched
     const double w = grows_at_tips() ? std::min(w1, w2) : 0.5 * (w1 + w2);
     return m_weights.position * w * d / (1 + d / m_weights.half_cost_distance);
@@ -260,13 +261,14 @@ public:
     const Trial trial = match_curves(p1, p2, rotation, few_samples);
     const Children a = children_of(0, path(0, p1), trial.last[0], nullptr);
     const Children b = children_of(1, path(1, p2), trial.last[1], &trial.gamma);
-    const Eigen::Matrix3d turned = turn(trial, a, b, rotation, 0);
+    const Eigen::Matrix3d turned = turn(trial, a, b, rotation, 0, 0);
     double cost = is_turned() ? turned_energy(trial, rotation, turned) : trial.cost;
     cost += rest_cost(p1, p2, trial.last);
     return cost + quick_cost_of_children(a, b, turned, length(0, p1), most - cost, prices);
   }
 
-  /// Estimates the rotation that aligns two paths and their children, without their subtrees.
+  /// Estimates the rotation that aligns two paths and their children, without their subtrees. The
+  /// directions of children count as much as the curves, whatever their weight in the energy.
   Eigen::Matrix3d
   quick_turn(std::size_t p1, std::size_t p2, const Eigen::Matrix3d& rotation, int passes) const
   {
@@ -275,7 +277,8 @@ public:
                 children_of(0, path(0, p1), trial.last[0], nullptr),
                 children_of(1, path(1, p2), trial.last[1], &trial.gamma),
                 rotation,
-                passes);
+                passes,
+                1);
   }
 
   /// Returns the least cost of an assignment of children by quick costs; infinity as soon as it is
@@ -315,13 +318,14 @@ public:
     return total;
   }
 
-  /// Returns the rotation that aligns branch 2 with branch 1, from the curves, the children, and
-  /// the rotation `inherited` from the parents.
+  /// Returns the rotation that aligns branch 2 with branch 1, from the curves, the rotation
+  /// `inherited` from the parents, and the directions of the children with the weight `children`.
   Eigen::Matrix3d turn(const Trial& trial,
                        const Children& all_1,
                        const Children& all_2,
                        const Eigen::Matrix3d& inherited,
-                       int passes) const
+                       int passes,
+                       double children) const
   {
     if (!m_weights.is_rotation_inherited || m_weights.is_published)
       return inherited;
@@ -344,7 +348,7 @@ public:
     covariance *= length / static_cast<double>(n);
     covariance += m_weights.inherited_rotation * length * inherited;
     Quaternion q = align_vectors(covariance, Quaternion(inherited));
-    if (m_weights.children <= 0 || a.s.empty() || b.s.empty())
+    if (children <= 0 || a.s.empty() || b.s.empty())
       return q.toRotationMatrix();
     for (int pass = 0; pass < passes; ++pass) {
       const Eigen::Matrix3d rotation = q.toRotationMatrix();
@@ -352,8 +356,8 @@ public:
       Eigen::Matrix3d all = covariance;
       for (std::size_t i = 0; i < partner.size(); ++i)
         if (partner[i] != none)
-          all += m_weights.children * std::sqrt(a.weight[i] * b.weight[partner[i]]) *
-                 a.direction[i] * b.direction[partner[i]].transpose();
+          all += children * std::sqrt(a.weight[i] * b.weight[partner[i]]) * a.direction[i] *
+                 b.direction[partner[i]].transpose();
       q = align_vectors(all, q);
     }
     return q.toRotationMatrix();

@@ -52,7 +52,8 @@ inline Compared_branches compare_branches(const Matching_energy& energy,
   Matching_energy::Trial& best = result.trial;
   Matching_energy::Children &a = result.children[0], &b = result.children[1];
   const auto find_rotation = [&] {
-    result.rotation = energy.turn(best, a, b, inherited, number_of_passes);
+    result.rotation =
+        energy.turn(best, a, b, inherited, number_of_passes, energy.weights().children);
   };
   const auto find_second = [&] {
     b = energy.children_of(1, energy.path(1, best.path_2), best.last[1], &best.gamma);

@@ -86,6 +86,8 @@ private:
   // day; but among all paths, some path has a slightly lower cost by chance
   static constexpr double wide_fork_ratio = 0.3;
 
+  static constexpr double rounding = 1e-9; // of a fraction of the possible cost
+
   static constexpr double any_cost = std::numeric_limits<double>::infinity();
 
   /// Least cost of two trees, and the additional cost if nothing is matched. [-]
@@ -110,7 +112,7 @@ private:
     if (m_cost.yaw != 0)
       m_cost.yaw = refine_yaw(m_trees, m_result, m_alignment.up, m_cost.yaw);
     m_cost.is_at_tips = is_at_tips;
-    m_cost.energy = trunk->cost;
+    m_cost.energy = std::max(0.0, trunk->cost); // rounding
     m_cost.share =
         from.more > 0 ? std::min(1.0, std::max(0.0, trunk->cost - from.least) / from.more) : 0;
   }
@@ -204,6 +206,8 @@ private:
 
   void match_at_tips()
   {
+    if (m_weights.growth != Branch_growth::at_tips && m_cost.share <= rounding)
+      return; // nothing is left to explain
     const double highest = std::max(m_trees[0]->heights[0], m_trees[1]->heights[0]);
     const Range from = range(highest, highest);
     Matching matching(*m_trees[0], *m_trees[1], m_weights, paths(1), true);
