@@ -112,7 +112,8 @@ BOOST_AUTO_TEST_CASE(beams_end_at_returns)
   for (const Point& p : curtain(0, 2))
     points.emplace_back(p.x(), p.y(), p.z());
   const hidden::Vector3 position(station.x(), station.y(), station.z());
-  BOOST_TEST(std::abs(hidden::estimate_angular_step(position, points) - step) < 1e-6);
+  const hidden::Beam_distances distances = hidden::distances_of_beams(position, points);
+  BOOST_TEST(std::abs(distances.step() - step) < 1e-6);
   const hidden::Station_view view(position, points, step);
   BOOST_TEST(view.visible_share({-2, 0.5, 4}, 0.01) < 0.25); // behind the curtain
   BOOST_TEST(view.visible_share({2, 0.5, 4}, 0.01) == 1);    // before it
@@ -128,6 +129,49 @@ BOOST_AUTO_TEST_CASE(beams_end_at_returns)
   const double beams = view.number_of_beams({0, 0, 1.5}, {0, 1, 0}, 1, 0.01);
   BOOST_TEST(std::abs(beams - 0.02 / std::pow(15 * step, 2)) < 1e-9);
   BOOST_TEST(view.number_of_beams({0, 0, 1.5}, {1, 0, 0}, 1, 0.01) < 1e-9); // along a beam
+}
+
+BOOST_AUTO_TEST_CASE(only_the_station_of_a_scan_sees_a_grid)
+{
+  namespace hidden = pcs::generators::hidden;
+  std::vector<hidden::Vector3> points, thinned;
+  for (const Point& p : curtain(0)) {
+    points.emplace_back(p.x(), p.y(), p.z());
+    if (points.size() % 17 % 5 == 0 && points.size() % 3 == 0)
+      thinned.push_back(points.back());
+  }
+  const auto share = [](const hidden::Vector3& from, const std::vector<hidden::Vector3>& seen) {
+    const hidden::Beam_distances distances = hidden::distances_of_beams(from, seen);
+    return distances.share_at(distances.step());
+  };
+  const hidden::Vector3 position(station.x(), station.y(), station.z());
+  BOOST_TEST(share(position, points) > 0.95);
+  BOOST_TEST(share(position, thinned) < 0.5);
+  BOOST_TEST(share({3, 6, 1}, points) < 0.5);
+  BOOST_TEST(share({0, 0, 3}, points) < 0.5);
+  BOOST_TEST(share(position, {}) == 0);
+  BOOST_TEST(share(position, {points[0]}) == 0);
+  BOOST_TEST(hidden::Station_view(position, points, step).crowded_share() == 0);
+  BOOST_TEST(hidden::Station_view(position, points, 3 * step).crowded_share() > 0.9);
+  const hidden::Station_view view(position, points, step);
+  BOOST_TEST(view.has_return({0, 0.5, 4}, 0.01));
+  BOOST_TEST(view.has_return({-0.1, 0.5, 4}, 0.1));
+  BOOST_TEST(!view.has_return({-1, 0.5, 4}, 0.01));
+  BOOST_TEST(!view.has_return({1, 0.5, 4}, 0.01));
+}
+
+BOOST_AUTO_TEST_CASE(the_result_tells_whether_the_scan_has_the_tree)
+{
+  const Tree tree = grown(pcs::fruit_habit(), 6);
+  const auto other = complete(tree, curtain(-20), pcs::fruit_habit());
+  BOOST_TEST(other.scanned_share < 0.01);
+  BOOST_TEST(other.grid_share > 0.95);
+  std::vector<Point> points;
+  for (std::size_t v = 0; v < num_vertices(tree); ++v)
+    points.push_back(tree[v].point);
+  const auto own = complete(tree, points, pcs::fruit_habit());
+  BOOST_TEST(own.scanned_share > 0.6);
+  BOOST_TEST(own.grid_share < 0.5);
 }
 
 BOOST_AUTO_TEST_CASE(the_share_that_is_found_grows_with_visibility_and_beams)
@@ -376,6 +420,22 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused)
           std::vector<Point>{Point(0, 0, 0)},
           np::scanner_positions(one));
   refuses("angular_step", tree, points, np::scanner_positions(one).angular_step(-1.0));
+  refuses("angular_step() is too large",
+          tree,
+          points,
+          np::scanner_positions(one).angular_step(4 * step));
+  refuses("found 5e-08", tree, points, np::scanner_positions(one).angular_step(5e-8));
+  refuses("not on a grid of directions; check that the position of station 0",
+          tree,
+          points,
+          np::scanner_positions(std::vector<Point>{Point(0, 0, 3)}));
+  Tree millimetres = tree;
+  for (std::size_t v = 0; v < num_vertices(tree); ++v) {
+    const Point& p = tree[v].point;
+    millimetres[v].point = Point(1000 * p.x(), 1000 * p.y(), 1000 * p.z());
+    millimetres[v].radius *= 1000;
+  }
+  refuses("use one unit of length", millimetres, points, np::scanner_positions(one));
   refuses("number_of_simulations",
           tree,
           points,

@@ -54,6 +54,13 @@ struct Hidden_wood
   double hidden_crown_share = 0;
   double density_factors[3] = {1, 1, 1}; //!< of branches on stems, on branches and on twigs [-]
   double angular_step = 0;               //!< between beams, given or estimated [rad]
+  //! share of sampled returns whose next return is in a direction at `angular_step`, within a tenth,
+  //! the smallest of all stations. It is near 1 for a complete scan on a grid of beams, and below
+  //! 0.5 if the scan is thinned, or the positions of the scanners or the angle are wrong [-]
+  double grid_share = 0;
+  //! share of the length of the measured axes with returns beside them. It is small if the skeleton
+  //! is not of this scan, or has other coordinates [-]
+  double scanned_share = 0;
 };
 
 } // namespace pcs

@@ -16,6 +16,7 @@
 #include <pcs/generators/habit/check_tree.h>
 #include <pcs/generators/hidden/Beam_visibility.h>
 #include <pcs/generators/hidden/estimate_hidden_wood.h>
+#include <pcs/internal/text.h>
 
 #include <CGAL/number_utils.h>
 #include <CGAL/property_map.h>
@@ -43,6 +44,7 @@ struct Hidden_wood_input
   double angular_step = 0;
   std::vector<Eigen::Vector3d> stations;
   std::vector<std::vector<Eigen::Vector3d>> points;
+  double grid_share = 1; ///< found with the views; see `Hidden_wood`
 };
 
 constexpr const char* hidden_wood_caller = "pcs::complete_hidden_wood()";
@@ -135,34 +137,73 @@ void read_station_points(const PointRange& points,
       station = static_cast<std::size_t>(label);
       check(station < number,
             hidden_wood_caller,
-            "station_map() has the station " + std::to_string(label) + ", but there are only " +
-                std::to_string(number) + " scanner_positions(); negative: unknown");
+            "station_map() has the station " + std::to_string(label) +
+                ", counted from 0, but there are only " + std::to_string(number) +
+                " scanner_positions(); negative: unknown");
     }
     input.points[station].push_back(finite_vector(get(map, element), "points"));
   }
+}
+
+/// Returns the angle between the beams of station `s`, and lowers `grid_share`.
+inline double angular_step_of(Hidden_wood_input& input, std::size_t s)
+{
+  constexpr double least_grid_share = 0.5;
+  const auto distances = generators::hidden::distances_of_beams(input.stations[s], input.points[s]);
+  const bool is_given = input.angular_step > 0;
+  const double step = is_given ? input.angular_step : distances.step();
+  const double share = distances.share_at(step);
+  const std::string way_on = "check that the position of station " + std::to_string(s) +
+                             " in scanner_positions() is in the coordinates of `points`, and that "
+                             "`points` has all returns "
+                             "of this station and is not thinned, or pass angular_step() [rad]";
+  check(is_given || share >= least_grid_share,
+        hidden_wood_caller,
+        "the angle between beams is not recognised, because the returns are not on a grid of "
+        "directions; " +
+            way_on);
+  check(step >= 1e-6 && step < 0.5,
+        hidden_wood_caller,
+        "the angle between beams must be at least 1e-6 and less than 0.5 rad, found " +
+            to_text(step) + "; " + way_on);
+  input.grid_share = std::min(input.grid_share, share);
+  return step;
 }
 
 /// Returns the views of all stations with points. Sets the angular step if it is not given.
 inline generators::hidden::Beam_visibility visibility_of(Hidden_wood_input& input)
 {
   namespace hidden = generators::hidden;
+  constexpr double largest_crowded_share = 0.5;
   std::vector<hidden::Station_view> views;
   double largest_step = 0;
   for (std::size_t s = 0; s < input.stations.size(); ++s) {
     if (input.points[s].empty())
       continue;
-    double step = input.angular_step;
-    if (step == 0)
-      step = hidden::estimate_angular_step(input.stations[s], input.points[s]);
-    check(step >= 1e-6 && step < 0.5,
-          hidden_wood_caller,
-          "the angle between beams is not recognised; pass angular_step() [rad]");
+    const double step = angular_step_of(input, s);
     largest_step = std::max(largest_step, step);
     views.emplace_back(input.stations[s], input.points[s], step);
+    check(views.back().crowded_share() < largest_crowded_share,
+          hidden_wood_caller,
+          "most points of station " + std::to_string(s) +
+              " are in directions with more than twice as many points as beams; angular_step() is "
+              "too large, or `points` has other stations as well");
   }
   check(!views.empty(), hidden_wood_caller, "`points` has no point of a station; pass the scan");
   input.angular_step = largest_step;
   return hidden::Beam_visibility(std::move(views));
+}
+
+/// Throws `Invalid_input` unless the tree is in the unit of length of the habit, as far as its
+/// height shows.
+inline void check_unit(double height, const Tree_habit_fit& fit)
+{
+  constexpr double largest_ratio = 100;
+  const double known = fit.allometry.height;
+  check(known <= 0 || (height < largest_ratio * known && known < largest_ratio * height),
+        hidden_wood_caller,
+        "the trunk has the length " + to_text(height) + ", and those of the habit have " +
+            to_text(known) + "; use one unit of length for the tree and the habit");
 }
 
 /// Adds the inferred branches to the graph of the result.
@@ -227,8 +268,9 @@ void add_inferred_branches(const generators::habit::Tree_sample& sample,
   \tparam PointRange a range of points, or of elements that `point_map` maps to points
   \tparam NamedParameters a sequence of named parameters
   \param tree the skeleton of the scan, z upwards [L]; `m` nodes
-  \param points the scan, with the leaves and other objects, in the coordinates of the tree;
-         `n` points
+  \param points the scan with all returns, those of leaves and other objects as well, in the
+         coordinates of the tree; `n` points. Beams without a return count as free, so a thinned scan
+         shows too little as hidden, whatever the angle between beams
   \param fit the habit, as from `fit_tree_habit()` of this tree, or of trees of its kind. Wood
          thinner than its `smallest_radius` is left out of the density
   \param np an optional sequence of named parameters, listed below
@@ -241,8 +283,9 @@ void add_inferred_branches(const generators::habit::Tree_sample& sample,
       \nptype a readable property map with integers; key: element of `points`
       \npdefault all points are of the only station
     \np{angular_step} the angle between neighbouring beams; 0: estimated [rad]
-      \nptype number, `>= 0`
-      \npdefault `0`. The estimate needs all returns, not thinned ones
+      \nptype number, `>= 0`, at most 0.5
+      \npdefault `0`. The estimate is refused unless at least half of the returns have their next
+          return in a direction at the same angle, within a tenth
     \np{point_map} where a position is read
       \nptype a readable property map; key: element of `points`
       \npdefault `CGAL::Identity_property_map`
@@ -256,8 +299,10 @@ void add_inferred_branches(const generators::habit::Tree_sample& sample,
   \return inferred branches and volumes; without hidden places, no branches and volumes near 0
   \throws pcs::Invalid_input when no station is known, several stations have no `station_map`, a
           station of a point is not given, no point has a station, the angle between beams is not
-          recognised, a coordinate is not finite, the tree has fewer than four branches besides its
-          trunk, or the habit or a named parameter is invalid
+          recognised, most returns are in directions with more than twice as many returns as beams,
+          a coordinate is not finite, the tree has fewer than four branches besides its trunk, the
+          trunk is 100 times as long or short as that of the habit, or the habit or a named parameter
+          is invalid
   \par Complexity
   \f$O(n \log n)\f$ for the views of the stations. Every simulation grows about the branches of the
   tree, with \f$O(\log n)\f$ for each node.
@@ -277,6 +322,7 @@ Hidden_wood<Kernel> complete_hidden_wood(const Tree_skeleton<Kernel>& tree,
   internal::Hidden_wood_input input = internal::read_hidden_wood_input(np);
   const auto sample =
       generators::habit::checked_sample(tree, fit.smallest_radius, internal::hidden_wood_caller, 0);
+  internal::check_unit(sample.axes.front().length(), fit);
   const Tree_habit habit = habit_at_height(fit, sample.axes.front().length());
   internal::check_habit(habit);
   internal::read_station_points(points, np, input);
@@ -298,6 +344,8 @@ Hidden_wood<Kernel> complete_hidden_wood(const Tree_skeleton<Kernel>& tree,
   result.hidden_crown_share = hidden::hidden_crown_share(sample, visibility, input.seed);
   std::copy(e.density_factors.begin(), e.density_factors.end(), result.density_factors);
   result.angular_step = input.angular_step;
+  result.grid_share = input.grid_share;
+  result.scanned_share = hidden::scanned_share(sample, visibility);
   return result;
 }
 

@@ -71,6 +71,28 @@ public:
     return std::min(1.0, number_before(p, -depth) / (cell_size * cell_size));
   }
 
+  /// Whether a return lies near `p`, on a branch of this radius.
+  bool has_return(const Vector3& p, double radius) const
+  {
+    const double margin = std::max(3 * radius, cell_size * step_at(p));
+    return number_before(p, -margin) > number_before(p, margin);
+  }
+
+  /// The share of the returns in cells that have more than twice as many returns as beams [-].
+  double crowded_share() const
+  {
+    constexpr double most = 2 * cell_size * cell_size;
+    std::size_t crowded = 0;
+    for (std::size_t i = 0; i < m_returns.size();) {
+      std::size_t end = i;
+      while (end < m_returns.size() && m_returns[end].first == m_returns[i].first)
+        ++end;
+      crowded += static_cast<double>(end - i) > most ? end - i : 0;
+      i = end;
+    }
+    return static_cast<double>(crowded) / static_cast<double>(m_returns.size());
+  }
+
   double step_at(const Vector3& p) const { return m_step * (p - m_position).norm(); }
 
   /// The number of beams towards a piece of a branch of this length and radius, without occlusion.
@@ -137,6 +159,14 @@ public:
     return 1 - hidden;
   }
 
+  /// Whether a return of a station lies near the position.
+  bool has_return(const Vector3& p, double radius) const
+  {
+    return std::any_of(m_views.begin(), m_views.end(), [&](const Station_view& view) {
+      return view.has_return(p, radius);
+    });
+  }
+
   /// The share of directions in which the position is hidden or within `depth` of a return.
   double blocked_share(const Vector3& p, double depth) const
   {
@@ -167,35 +197,51 @@ private:
   std::vector<Station_view> m_views;
 };
 
-/// The step of a grid of beams: the lower quartile of the distances of directions to the next one,
-/// which is a neighbour in a row or a column. Returns 0 for fewer than two directions.
-inline double estimate_angular_step(const Vector3& station, const std::vector<Vector3>& points)
+/// The angles from sampled directions of a station to the next direction; see `distances_of_beams()`.
+struct Beam_distances
+{
+  std::vector<double> angles; ///< sorted [rad]
+
+  /// The lower quartile, the distance of neighbours in a row or a column of a grid; 0: unknown.
+  double step() const { return angles.empty() ? 0 : angles[angles.size() / 4]; }
+
+  /// The share of distances that are `step` within a tenth [-].
+  double share_at(double step) const
+  {
+    constexpr double tolerance = 0.1;
+    const auto is_near = [&](double angle) { return std::abs(angle - step) <= tolerance * step; };
+    const auto number = std::count_if(angles.begin(), angles.end(), is_near);
+    return angles.empty() ? 0 : static_cast<double>(number) / static_cast<double>(angles.size());
+  }
+};
+
+/// Finds the distance to the next direction for a sample of the directions. Beams on a grid have
+/// equal distances; those of a thinned scan, or seen from another position, have not.
+inline Beam_distances distances_of_beams(const Vector3& station, const std::vector<Vector3>& points)
 {
   constexpr std::size_t number_of_samples = 200;
   constexpr double same = 1e-7; // [rad]
   std::vector<Eigen::Vector2d> directions;
+  directions.reserve(points.size());
   for (const Vector3& p : points) {
     const Vector3 d = p - station;
     directions.emplace_back(std::atan2(d.y(), d.x()), std::atan2(d.z(), std::hypot(d.x(), d.y())));
   }
-  std::vector<double> nearest;
+  Beam_distances result;
   for (std::size_t k = 0; k < number_of_samples && !points.empty(); ++k) {
     pcs::internal::Random_stream random(17, k);
     const Eigen::Vector2d& d = directions[random.bits() % directions.size()];
     double best = std::numeric_limits<double>::infinity();
     for (const Eigen::Vector2d& other : directions) {
-      const double distance = (other - d).norm();
-      if (distance > same)
-        best = std::min(best, distance);
+      const double squared = (other - d).squaredNorm();
+      if (squared > same * same)
+        best = std::min(best, squared);
     }
     if (std::isfinite(best))
-      nearest.push_back(best);
+      result.angles.push_back(std::sqrt(best));
   }
-  if (nearest.empty())
-    return 0;
-  const auto quartile = nearest.begin() + static_cast<std::ptrdiff_t>(nearest.size() / 4);
-  std::nth_element(nearest.begin(), quartile, nearest.end());
-  return *quartile;
+  std::sort(result.angles.begin(), result.angles.end());
+  return result;
 }
 
 } // namespace hidden

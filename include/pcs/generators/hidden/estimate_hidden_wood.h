@@ -129,6 +129,20 @@ sum_up(const Hidden_estimate& e, double measured, Inferred_volume& inferred, Inf
   total = with_error(sum, std::hypot(error, Error_shares::measured * sum), 0);
 }
 
+/// The share of the length of the measured axes with returns beside them.
+inline double scanned_share(const habit::Tree_sample& tree, const Beam_visibility& visibility)
+{
+  double all = 0, scanned = 0;
+  for (const habit::Axis& axis : tree.axes)
+    for (std::size_t i = 1; i < axis.points.size(); ++i) {
+      const Vector3 middle = (axis.points[i - 1] + axis.points[i]) / 2;
+      const double length = axis.at[i] - axis.at[i - 1];
+      all += length;
+      scanned += visibility.has_return(middle, axis.radius[i]) ? length : 0;
+    }
+  return all > 0 ? scanned / all : 0;
+}
+
 /// The share of the measured wood, rotated about the trunk, that less than a tenth of the beams
 /// reaches.
 inline double hidden_crown_share(const habit::Tree_sample& tree,
