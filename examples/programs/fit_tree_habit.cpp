@@ -144,6 +144,8 @@ Json_report complete_tree(const pcs::Tree_habit_fit& fit,
                           Report_file* branch_file)
 {
   const auto wood = complete_wood(read_tree(options.complete, options), fit, options);
+  for (const std::string& sentence : warnings(wood))
+    std::cerr << "fit_tree_habit: warning: " << options.complete << ": " << sentence << '\n';
   if (branch_file != nullptr)
     branch_file->commit(swc_of(wood));
   if (!options.is_quiet)

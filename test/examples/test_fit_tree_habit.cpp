@@ -215,6 +215,38 @@ BOOST_AUTO_TEST_CASE(options_of_hidden_wood_are_checked)
           "no property 's'");
   refuses(known + tree + "--scan scan.ply --scanner 6 0 1.5 --step-degrees 60 --inferred i.swc",
           "angular_step");
+  refuses(known + tree + "--scan scan.ply --scanner 6 4 1.5 --inferred i.swc",
+          "not on a grid of directions");
+  const auto refuses_stations = [&](const std::vector<double>& stations,
+                                    const std::string& scanner,
+                                    const std::string& word) {
+    pcs::IO::Point_table table(std::vector<Kernel::Point_3>(stations.size(), {0, 0, 1}));
+    table.add_property("station", stations);
+    pcs::IO::write_points(path("labels.ply"), table);
+    refuses(known + tree + "--scan labels.ply --inferred i.swc --scanner " + scanner, word);
+  };
+  refuses_stations({0, 0, 1}, "6 0 1.5", "--scanner names one station");
+  refuses_stations({0, 0.5}, "6 0 1.5 0 6 1.5", "point 1: property 'station' must be the number");
+  refuses_stations({0, 1e300}, "6 0 1.5 0 6 1.5", "point 1: property 'station' must be the number");
+  refuses_stations({1, 2}, "6 0 1.5 0 6 1.5", "has the station 2, counted from 0");
+}
+
+BOOST_AUTO_TEST_CASE(doubtful_hidden_wood_is_reported)
+{
+  fit();
+  scan();
+  const std::string arguments =
+      "--habit habit.json --complete tree_1.swc --scan scan.ply --simulations 20 --quiet "
+      "--scanner 6 0 1.5 --report report.json ";
+  BOOST_TEST_REQUIRE(run(arguments + "--step-degrees 0.1") == 0, err);
+  const Json wood = Json::parse(content("report.json"))["hidden_wood"];
+  BOOST_TEST(wood["grid_share"] < 0.01);
+  BOOST_TEST(wood["scanned_share"] < 0.5);
+  BOOST_TEST(err.find("% of the length of the skeleton; check that") != std::string::npos, err);
+  BOOST_TEST(err.find("% of the returns; check --scanner") != std::string::npos, err);
+  BOOST_TEST_REQUIRE(run(arguments) == 0, err);
+  BOOST_TEST(Json::parse(content("report.json"))["hidden_wood"]["grid_share"] > 0.95);
+  BOOST_TEST(err.find("of the returns") == std::string::npos, err);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -72,7 +72,58 @@ inline nlohmann::ordered_json json_of(const pcs::Hidden_wood<Wood_kernel>& wood)
           {"inferred_branches", wood.branches[boost::graph_bundle].branches.size()},
           {"inferred_stems", wood.number_of_stems},
           {"hidden_crown_share", wood.hidden_crown_share},
-          {"angular_step", wood.angular_step}};
+          {"angular_step", wood.angular_step},
+          {"grid_share", wood.grid_share},
+          {"scanned_share", wood.scanned_share}};
+}
+
+/// Sentences about results that are probably wrong.
+inline std::vector<std::string> warnings(const pcs::Hidden_wood<Wood_kernel>& wood)
+{
+  constexpr double fewest = 0.5;
+  const auto percent = [](double share) { return std::to_string(std::lround(100 * share)) + " %"; };
+  std::vector<std::string> result;
+  if (wood.scanned_share < fewest)
+    result.push_back("returns lie beside " + percent(wood.scanned_share) +
+                     " of the length of the skeleton; check that the skeleton is of this scan, and "
+                     "in its coordinates");
+  if (wood.grid_share < fewest)
+    result.push_back("the next return is at the angle of --step-degrees for " +
+                     percent(wood.grid_share) +
+                     " of the returns; check --scanner and --step-degrees, and that the scan has "
+                     "all returns");
+  if (wood.inferred_volume.value > wood.measured_volume)
+    result.push_back("more wood is inferred than measured; check --scanner, --step-degrees and the "
+                     "habit, or scan from more stations");
+  return result;
+}
+
+/// Returns the stations of the points, counted from 0.
+inline std::vector<std::int64_t>
+stations_of(const pcs::IO::Point_table& table, std::size_t number, const Habit_options& options)
+{
+  const auto at_point = [&](std::size_t i) {
+    return options.scan + ": point " + std::to_string(i) + ": property '" + options.stations + "'";
+  };
+  std::vector<std::int64_t> result(table.points().size(), 0);
+  if (!table.has_property(options.stations)) {
+    if (number == 1)
+      return result;
+    throw pcs::Invalid_input(options.scan + " has no property '" + options.stations +
+                             "' with the station of each point, counted from 0 in the order of "
+                             "--scanner; name it by --stations");
+  }
+  const std::vector<double> stations = table.property_as_double(options.stations);
+  for (std::size_t i = 0; i < stations.size(); ++i) {
+    if (number == 1 && stations[i] != stations[0])
+      throw pcs::Invalid_input(at_point(i) + " differs from that of point 0, but --scanner names "
+                                             "one station; give x y z of all stations");
+    if (stations[i] != std::floor(stations[i]) || std::abs(stations[i]) > 1e9)
+      throw pcs::Invalid_input(at_point(i) + " must be the number of a station, counted from 0; "
+                                             "name another property by --stations");
+    result[i] = number == 1 ? 0 : static_cast<std::int64_t>(stations[i]);
+  }
+  return result;
 }
 
 /// Reads the scan and infers the hidden wood of `tree`.
@@ -85,17 +136,12 @@ inline pcs::Hidden_wood<Wood_kernel> complete_wood(const pcs::Tree_skeleton<Wood
   for (std::size_t i = 0; i + 2 < options.scanners.size(); i += 3)
     scanners.emplace_back(options.scanners[i], options.scanners[i + 1], options.scanners[i + 2]);
   const pcs::IO::Point_table table = pcs::IO::read_points(options.scan);
+  const std::vector<std::int64_t> stations = stations_of(table, scanners.size(), options);
   std::vector<Labelled> points;
-  for (const auto& p : table.points())
-    points.emplace_back(Wood_kernel::Point_3(p.x(), p.y(), p.z()), 0);
-  if (scanners.size() > 1) {
-    if (!table.has_property(options.stations))
-      throw pcs::Invalid_input(options.scan + " has no property '" + options.stations +
-                               "' with the station of each point, counted from 0 in the order of "
-                               "--scanner; name it by --stations");
-    const std::vector<double> stations = table.property_as_double(options.stations);
-    for (std::size_t i = 0; i < points.size(); ++i)
-      points[i].second = static_cast<std::int64_t>(stations[i]);
+  points.reserve(stations.size());
+  for (std::size_t i = 0; i < stations.size(); ++i) {
+    const auto& p = table.points()[i];
+    points.emplace_back(Wood_kernel::Point_3(p.x(), p.y(), p.z()), stations[i]);
   }
   return pcs::complete_hidden_wood(tree,
                                    points,
