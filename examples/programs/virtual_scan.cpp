@@ -83,10 +83,15 @@ pcs::IO::Point_table table_of(Scan& scan)
   return table;
 }
 
-nlohmann::ordered_json
-report_of(const Scan_options& options, const Tree& tree, const pcs::Scan_report& r)
+nlohmann::ordered_json report_of(const Scan_options& options,
+                                 const Tree& tree,
+                                 const Scan& scan,
+                                 const pcs::Scan_report& r)
 {
   const pcs::Tree_measures m = pcs::measure_tree(tree);
+  nlohmann::ordered_json stations = nlohmann::ordered_json::array();
+  for (const auto& p : scan.stations)
+    stations.push_back({p.x(), p.y(), p.z()});
   return {{"tree", options.tree.empty() ? options.preset : options.tree},
           {"seed", options.seed},
           {"nodes", num_vertices(tree)},
@@ -94,6 +99,7 @@ report_of(const Scan_options& options, const Tree& tree, const pcs::Scan_report&
           {"length", m.length},
           {"volume", m.volume},
           {"union_volume", m.union_volume},
+          {"stations", stations},
           {"beams", r.number_of_beams},
           {"points", r.number_of_points},
           {"wood_points", r.number_of_wood_points},
@@ -141,7 +147,7 @@ void run(Scan_options& options)
   if (report.status != pcs::Status::converged)
     throw pcs::Invalid_input("no beam met the tree; nothing was written");
 
-  const nlohmann::ordered_json json = report_of(options, tree, report);
+  const nlohmann::ordered_json json = report_of(options, tree, scan, report);
   pcs::IO::write_points(options.output, table_of(scan));
   if (!options.truth.empty())
     pcs::IO::write_tree_csv(options.truth, tree, scan.hits);

@@ -10,6 +10,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <examples/Program_run.h>
 #include <set>
@@ -88,6 +89,12 @@ BOOST_AUTO_TEST_CASE(scan_truth_swc_and_report_agree)
   BOOST_TEST(report["points"].get<std::size_t>() == node.size());
   BOOST_TEST(report["nodes"].get<std::size_t>() == hits.size());
   BOOST_TEST(report["union_volume"].get<double>() < report["volume"].get<double>());
+  BOOST_TEST_REQUIRE(report["stations"].size() == 4u);
+  for (const Json& p : report["stations"]) {
+    const double distance = std::hypot(p[0].get<double>(), p[1].get<double>());
+    BOOST_TEST((distance > 1 && distance < 100), p);
+  }
+  BOOST_TEST(report["stations"][0] != report["stations"][1]);
 }
 
 BOOST_AUTO_TEST_CASE(a_seed_reproduces_every_byte)
