@@ -52,11 +52,14 @@ They stand apart. --score tells for each tree how far it is from trees of its he
 by the habit: the distance is about 1 for a similar tree; the share of grown trees that are as
 far is small for an outlier.
 
---complete infers the wood of one tree that no beam of the scanner reached, from its skeleton, its
-scan (with the leaves), and the positions of the scanners. Branches grow by the habit in hidden
-places, with the density that the seen part has; nothing measured is changed. --inferred writes
-them alone (SWC; bases have no parent); the report has their volumes with 95 % intervals, as
-`inferred_...`, beside the measured volume.
+--complete infers the wood of one tree that no beam of the scanner reached. It needs the skeleton,
+the scan with all returns (also of leaves), and the positions of the scanners, in the coordinates of
+the scan; the report of virtual_scan has them. Branches grow by the habit in hidden places, as
+densely as where the scan shows them. The measured wood is not changed. --inferred writes the
+inferred branches (SWC; branches that begin on measured wood have no parent). The report has their
+volumes with 95 % intervals, as `inferred_...`, beside the measured volume. If there are several
+scanners, each point needs the number of its station (--stations). A warning tells when the
+skeleton, the scan and the positions seem not to belong together.
 
 For example:
   fit_tree_habit --input oak_1.swc oak_2.swc --smallest-radius 0.01 --habit oak.json

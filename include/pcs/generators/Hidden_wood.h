@@ -49,14 +49,14 @@ struct Hidden_wood
   //! measured and inferred; the interval includes errors of the measured wood
   Inferred_volume total_volume;
 
-  //! share of the crown that less than a tenth of the beams reaches, where the crown is the measured
-  //! wood, rotated about the trunk [-]
+  //! share of the crown that less than a tenth of the beams reaches, where the crown is the
+  //! measured wood, rotated about the trunk [-]
   double hidden_crown_share = 0;
   double density_factors[3] = {1, 1, 1}; //!< of branches on stems, on branches and on twigs [-]
   double angular_step = 0;               //!< between beams, given or estimated [rad]
-  //! share of sampled returns whose next return is in a direction at `angular_step`, within a tenth,
-  //! the smallest of all stations. It is near 1 for a complete scan on a grid of beams, and below
-  //! 0.5 if the scan is thinned, or the positions of the scanners or the angle are wrong [-]
+  //! share of the returns whose next return is in a direction at `angular_step`, within a tenth;
+  //! the smallest of all stations, by samples. It is near 1 for a complete scan on a grid of beams,
+  //! and below 0.5 if the scan is thinned, or a position of a scanner or the angle is wrong [-]
   double grid_share = 0;
   //! share of the length of the measured axes with returns beside them. It is small if the skeleton
   //! is not of this scan, or has other coordinates [-]

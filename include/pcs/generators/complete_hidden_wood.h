@@ -269,8 +269,8 @@ void add_inferred_branches(const generators::habit::Tree_sample& sample,
   \tparam NamedParameters a sequence of named parameters
   \param tree the skeleton of the scan, z upwards [L]; `m` nodes
   \param points the scan with all returns, those of leaves and other objects as well, in the
-         coordinates of the tree; `n` points. Beams without a return count as free, so a thinned scan
-         shows too little as hidden, whatever the angle between beams
+         coordinates of the tree; `n` points. Beams without a return count as free, so in a thinned
+         scan too few places are hidden, also if the angle between beams is given
   \param fit the habit, as from `fit_tree_habit()` of this tree, or of trees of its kind. Wood
          thinner than its `smallest_radius` is left out of the density
   \param np an optional sequence of named parameters, listed below
@@ -301,8 +301,8 @@ void add_inferred_branches(const generators::habit::Tree_sample& sample,
           station of a point is not given, no point has a station, the angle between beams is not
           recognised, most returns are in directions with more than twice as many returns as beams,
           a coordinate is not finite, the tree has fewer than four branches besides its trunk, the
-          trunk is 100 times as long or short as that of the habit, or the habit or a named parameter
-          is invalid
+          trunk is 100 times as long or short as that of the habit, or the habit or a named
+          parameter is invalid
   \par Complexity
   \f$O(n \log n)\f$ for the views of the stations. Every simulation grows about the branches of the
   tree, with \f$O(\log n)\f$ for each node.

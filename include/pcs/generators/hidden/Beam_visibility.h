@@ -197,7 +197,7 @@ private:
   std::vector<Station_view> m_views;
 };
 
-/// The angles from sampled directions of a station to the next direction; see `distances_of_beams()`.
+/// Angles between neighbouring directions of a station; see `distances_of_beams()`.
 struct Beam_distances
 {
   std::vector<double> angles; ///< sorted [rad]
