@@ -187,6 +187,27 @@ BOOST_AUTO_TEST_CASE(the_first_axis_is_fitted_with_the_noise_that_it_shows)
   BOOST_TEST(error(0.7) < 0.5 * error(0));
 }
 
+// A thick axis bends within a few of its radii, so the bound in spacings holds there.
+BOOST_AUTO_TEST_CASE(distances_of_nodes_are_bounded_in_spacings)
+{
+  constexpr double thick = 2 * radius;
+  const Chain_options rules;
+  BOOST_REQUIRE(rules.node_spacing.factor * thick > 1.3 * rules.node_spacing.highest * spacing);
+  Layered_tubes tubes;
+  tubes.add(none, Vec3::Zero(), Vec3(0, 0, 1), thick, 0, 2 * pi);
+  Scan scan;
+  Layer_tree tree;
+  tubes.finish(scan, tree);
+  const Axis_set set = axes_of(scan, tree);
+  BOOST_REQUIRE(set.axes.size() == 1u);
+  const Axis& axis = set.axes.front().axis;
+  BOOST_REQUIRE(axis.size() > 2u);
+  const double mean = length_of(axis) / double(axis.size() - 1);
+  BOOST_TEST_MESSAGE("mean distance " << mean / scan.spacing << " spacings");
+  BOOST_TEST(mean < 1.1 * rules.node_spacing.highest * scan.spacing);
+  BOOST_TEST(mean > 0.8 * rules.node_spacing.highest * scan.spacing);
+}
+
 BOOST_AUTO_TEST_CASE(limbs_on_an_arc_of_a_trunk_are_no_second_trunk)
 {
   const Two_arcs shape;
