@@ -12,6 +12,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <string>
 #include <vector>
@@ -106,6 +107,17 @@ BOOST_AUTO_TEST_CASE(ids_are_those_of_the_file)
       hits,
       ids);
   BOOST_TEST((ids == std::vector<std::int64_t>{90071992547409933}));
+}
+
+BOOST_AUTO_TEST_CASE(the_root_may_stand_in_any_row_and_old_ids_are_replaced)
+{
+  Tree tree;
+  std::vector<std::size_t> hits;
+  std::vector<std::int64_t> ids{4, 5, 6};
+  const std::string rows = "8,9,0,0,0,0,1,1,1,1,0\n9,-1,0,0,0,0,0,1,1,1,0\n";
+  pcs::IO::read_tree_csv<Kernel>(file("root.csv", header + rows), tree, hits, ids);
+  BOOST_TEST(tree[boost::graph_bundle].root == 1u);
+  BOOST_TEST((ids == std::vector<std::int64_t>{8, 9}));
 }
 
 BOOST_AUTO_TEST_CASE(malformed_files_are_refused_with_the_line)

@@ -53,6 +53,54 @@ BOOST_AUTO_TEST_CASE(a_straight_trunk_is_as_long_as_computed_by_hand)
   BOOST_TEST(young[2].radius == 0.1, boost::test_tools::tolerance(1e-12));
 }
 
+// The branch is stored in front of the trunk. Half axes are in proportion to the radii.
+BOOST_AUTO_TEST_CASE(a_slanted_tree_is_as_computed_by_hand)
+{
+  Tree tree = pcs_test::make_tree<Kernel>({{pcs::npos, 1, 0, 0, 0, 0.3},
+                                           {0, 1, 2, 1, 2, 0.2},
+                                           {1, 1, 6, 3, 6, 0.1},
+                                           {1, 0, 3, 3, 4, 0.05},
+                                           {3, 0, 5, 7, 8, 0.05}});
+  const double major[] = {0.4, 0.3, 0.2}, minor[] = {0.2, 0.1, 0.05};
+  for (std::size_t v = 0; v < 3; ++v) {
+    tree[v].major_radius = major[v];
+    tree[v].minor_radius = minor[v];
+  }
+  std::vector<std::size_t> old;
+  const Tree young = pcs::tree_at_age(tree, 0.75, old);
+  BOOST_TEST_REQUIRE(num_vertices(young) == 5u);
+  const std::vector<std::size_t> expected_old{0, 1, pcs::npos, 3, pcs::npos};
+  BOOST_TEST((old == expected_old));
+
+  const auto is_close = [](const auto& node, double x, double y, double z, double r) {
+    return std::hypot(node.point.x() - x, node.point.y() - y, node.point.z() - z) < 1e-12 &&
+           std::abs(node.radius - r) < 1e-12;
+  };
+  // The trunk of length 9 has the length 9 * 0.75 * 1.25: 29/32 of its second edge.
+  const double part = 29.0 / 32;
+  BOOST_TEST(is_close(young[0], 0, 0, 0, 0.25));
+  BOOST_TEST(is_close(young[2], 2 + 4 * part, 1 + 2 * part, 2 + 4 * part, 0.1));
+  BOOST_TEST(std::abs(young[0].major_radius - 0.4 * 0.25 / 0.3) < 1e-12);
+  BOOST_TEST(std::abs(young[0].minor_radius - 0.2 * 0.25 / 0.3) < 1e-12);
+  const double radius = 0.2 - 0.1 * part; // between the nodes, before it is that of the tip
+  BOOST_TEST(std::abs(young[2].major_radius - (0.3 - 0.1 * part) * 0.1 / radius) < 1e-12);
+  BOOST_TEST(std::abs(young[2].minor_radius - (0.1 - 0.05 * part) * 0.1 / radius) < 1e-12);
+
+  // The tip passed the base of the branch, a third of the trunk, at the age 1 - sqrt(2/3).
+  const double birth = 1 - std::sqrt(2.0 / 3), time = (0.75 - birth) / (1 - birth);
+  const double length = time * (2 - time); // of the branch, in the old length
+  BOOST_TEST(is_close(young[1], 2, 1, 2, 0.1 + 0.1 * time));
+  BOOST_TEST(is_close(young[4], 3 + 2 * length, 3 + 4 * length, 4 + 4 * length, 0.05));
+
+  const auto& branches = young[boost::graph_bundle].branches;
+  BOOST_TEST_REQUIRE(branches.size() == 2u);
+  BOOST_TEST(branches[0].id == 1u);
+  BOOST_TEST(branches[0].parent == pcs::npos);
+  BOOST_TEST(branches[1].id == 0u);
+  BOOST_TEST(branches[1].parent == 0u);
+  BOOST_TEST(young[boost::graph_bundle].root == 0u);
+}
+
 BOOST_AUTO_TEST_CASE(axes_are_beginnings_of_the_older_ones_and_ids_stay)
 {
   Tree tree;

@@ -7,8 +7,12 @@
 
 #include <boost/test/unit_test.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <vector>
 
 namespace test_Nearest_neighbors {
 
@@ -73,6 +77,36 @@ BOOST_AUTO_TEST_CASE(equal_distances_are_ordered_by_coordinates)
   const std::size_t expected[] = {3, 4, 2, 0, 1};
   for (std::size_t b = 0; b < 5; ++b)
     BOOST_TEST(found[b].index == expected[b]);
+}
+
+BOOST_AUTO_TEST_CASE(of_the_nearest_points_the_lexicographically_smallest_is_taken)
+{
+  const auto any = [](std::uint32_t) { return true; };
+  for (const double r : {1e-3, 0.25, 1.0, 64.0}) {
+    Points points;
+    for (int k = 0; k < 20; ++k) // the nearest ones are in different leaves of the tree
+      for (const Vec3& p : {Vec3(0, r, 0), Vec3(r, 0, 0), Vec3(0, 0, r), Vec3(-r, 0, 0)})
+        points.push_back((1 + 0.25 * k) * p);
+    for (std::size_t shift = 0; shift < points.size(); ++shift) {
+      std::rotate(points.begin(), points.begin() + 1, points.end());
+      const Tree nearest(points);
+      const Tree::Neighbor found = nearest.nearest_if(Vec3(0, 0, 0), 10 * r, any);
+      BOOST_TEST((points[found.index] == Vec3(-r, 0, 0)));
+      BOOST_TEST(found.squared_distance == r * r);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(points_within_a_radius_are_appended_in_the_order_of_their_indices)
+{
+  const Points points = pcs_test::random_points(500, 6);
+  const Tree nearest(points);
+  std::vector<std::uint32_t> found{7, 3};
+  nearest.within(points[0], 0.5, found);
+  BOOST_REQUIRE(found.size() > 20u);
+  BOOST_TEST(found[0] == 7u);
+  BOOST_TEST(found[1] == 3u);
+  BOOST_TEST(std::is_sorted(found.begin() + 2, found.end()));
 }
 
 BOOST_AUTO_TEST_CASE(nothing_is_nearer_than_the_radius)
