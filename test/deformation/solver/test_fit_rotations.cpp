@@ -13,6 +13,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -176,6 +177,28 @@ BOOST_AUTO_TEST_CASE(fits_are_steps_of_newton)
       BOOST_TEST((at(results[0]) - expected).norm() < 1e-12);
     for (const Rotation_fits& other : results)
       BOOST_TEST((at(other) == at(results[0])));
+  }
+}
+
+// The model of a rotation by `a` about a coordinate axis has its maximum at `tan(a)`, beyond the
+// bound of 1.
+BOOST_AUTO_TEST_CASE(steps_about_every_axis_are_bounded)
+{
+  constexpr double angle = 1.2;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Fit turned{pcs::rotation_exp(angle * Vec3::Unit(axis)).toRotationMatrix(),
+                     Quaternion::Identity(),
+                     Quaternion::Identity()};
+    const Vec3 expected = turned.expected(0);
+    BOOST_TEST(expected[axis] > 0.1);
+    BOOST_TEST(expected[axis] < 1.5); // 2.0 without the bound
+    for (const Fit_rotations fit : all_fits()) {
+      Rotation_fits result;
+      result.set(0, turned.covariance, turned.present, turned.field);
+      fit(0, 1, result);
+      for (int k = 0; k < 3; ++k)
+        BOOST_TEST(std::abs(result.deviation[k][0] - expected[k]) < 1e-12);
+    }
   }
 }
 
