@@ -15,6 +15,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -132,7 +133,7 @@ BOOST_AUTO_TEST_CASE(each_tree_is_there_as_a_whole_and_once)
 
 BOOST_AUTO_TEST_CASE(a_branch_of_one_tree_is_virtual_in_the_other)
 {
-  const auto check = [](const Matched_trees& m, int without) {
+  const auto check = [](const Matched_trees& m, int without, const Stick& missing) {
     BOOST_TEST_REQUIRE(m.common.branches.size() == 3u);
     int number_of_virtual = 0;
     for (const Common_branch& branch : m.common.branches) {
@@ -143,13 +144,33 @@ BOOST_AUTO_TEST_CASE(a_branch_of_one_tree_is_virtual_in_the_other)
       BOOST_TEST(branch.parent == 0u);
       BOOST_TEST(branch.attachment[0] == branch.attachment[1]);
       BOOST_TEST(branch.node[std::size_t(without)].empty());
-      BOOST_TEST(std::abs(m.path(branch, std::size_t(1 - without)).length() - high.way.norm()) <
+      BOOST_TEST(std::abs(m.path(branch, std::size_t(1 - without)).length() - missing.way.norm()) <
                  1e-9);
     }
     BOOST_TEST(number_of_virtual == 1);
   };
-  check(Matched_trees(rooted({trunk, low, high}), rooted({trunk, low})), 1);
-  check(Matched_trees(rooted({trunk, low}), rooted({trunk, low, high})), 0);
+  check(Matched_trees(rooted({trunk, low, high}), rooted({trunk, low})), 1, high);
+  check(Matched_trees(rooted({trunk, low}), rooted({trunk, low, high})), 0, high);
+  check(Matched_trees(rooted({trunk, low, high}), rooted({trunk, high})), 1, low);
+}
+
+BOOST_AUTO_TEST_CASE(close_nodes_of_two_branches_are_one_node)
+{
+  std::vector<double> straight;
+  for (int k = 0; k <= 64; ++k)
+    straight.push_back(k / 64.0);
+  const Warp warp(straight, {{0, 0}, {0.5, 0.5}, {1, 1}});
+  Branch_path one, two;
+  one.arc = {0, 3, 5, 6, 10};
+  two.arc = {0, 1.525, 2.9875, 3.5, 5}; // in halves
+  const Place_pair expected[] =
+      {{0, 0}, {0.3, 0.305}, {0.5, 0.5}, {0.6, 0.5975}, {0.7, 0.7}, {1, 1}};
+  const std::vector<Place_pair> nodes = common_nodes(one, two, warp);
+  BOOST_TEST_REQUIRE(nodes.size() == std::size(expected));
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    BOOST_TEST(std::abs(nodes[k].a - expected[k].a) < 1e-9);
+    BOOST_TEST(std::abs(nodes[k].b - expected[k].b) < 1e-9);
+  }
 }
 
 BOOST_AUTO_TEST_CASE(of_forks_that_cross_the_heavier_ones_correspond)

@@ -28,6 +28,18 @@ BOOST_AUTO_TEST_CASE(resampling_keeps_ends_and_length)
   BOOST_CHECK_CLOSE(pcs::skeleton::length_of(result), 3.0, 1.0);
 }
 
+BOOST_AUTO_TEST_CASE(resampling_interpolates_radii)
+{
+  pcs::skeleton::Axis axis(2);
+  axis[1].point = Vec3(0, 0, 1);
+  axis[0].radius = 0.1;
+  axis[1].radius = 0.3;
+  const auto result = pcs::skeleton::resample(axis, {1, 0.01, 0.1});
+  BOOST_REQUIRE_EQUAL(result.size(), 11u);
+  for (const auto& node : result)
+    BOOST_CHECK_CLOSE(node.radius, 0.1 + 0.2 * node.point.z(), 1e-9);
+}
+
 BOOST_AUTO_TEST_CASE(a_place_beyond_an_end_says_so)
 {
   pcs::skeleton::Axis axis(2);

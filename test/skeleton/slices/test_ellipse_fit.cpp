@@ -30,6 +30,24 @@ BOOST_AUTO_TEST_CASE(all_ways_find_an_exact_ellipse)
   }
 }
 
+// Semi-axes 2 and 1, the major one along (0.6, 0.8).
+BOOST_AUTO_TEST_CASE(a_conic_away_from_the_origin_is_that_ellipse)
+{
+  const auto e = pcs::skeleton::internal::ellipse_of_conic(0.73, -0.72, 0.52, -5.82, 4.24, 11.97);
+  BOOST_CHECK_CLOSE(e.major, 2.0, 1e-9);
+  BOOST_CHECK_CLOSE(e.minor, 1.0, 1e-9);
+  BOOST_CHECK_SMALL((e.center - Vec2(3, -2)).norm(), 1e-12);
+  BOOST_CHECK_SMALL(std::abs(e.direction.dot(Vec2(0.6, 0.8))) - 1, 1e-12);
+}
+
+BOOST_AUTO_TEST_CASE(the_direct_fit_needs_no_centred_points)
+{
+  const auto e = pcs::skeleton::internal::fit_direct(arc(2, 1.5, 1.2 * pi, 40, 0));
+  BOOST_CHECK_CLOSE(e.major, 2.0, 1e-3);
+  BOOST_CHECK_CLOSE(e.minor, 1.5, 1e-3);
+  BOOST_CHECK_SMALL((e.center - Vec2(5, -3)).norm(), 1e-5);
+}
+
 BOOST_AUTO_TEST_CASE(on_a_half_turn_only_the_circle_keeps_the_radius)
 {
   using pcs::Section_fit;
