@@ -45,6 +45,11 @@ BOOST_AUTO_TEST_CASE(the_stem_supports_most_points)
       pcs::skeleton::points_of_stem(forked_tree(), sure, {0.4, 2});
   for (std::size_t i = 0; i < 21; ++i)
     BOOST_TEST(bool(more[i]) == (i < 20), "point " << i);
+  // The component of the fork supports 18 of 20 points.
+  const std::vector<std::uint8_t> root =
+      pcs::skeleton::points_of_stem(forked_tree(), sure, {0.95, 2});
+  for (std::size_t i = 0; i < 21; ++i)
+    BOOST_TEST(bool(root[i]) == (i < 2), "point " << i);
 }
 
 BOOST_AUTO_TEST_CASE(doubtful_points_are_no_stem)
