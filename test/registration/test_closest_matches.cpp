@@ -67,6 +67,10 @@ BOOST_AUTO_TEST_CASE(a_query_above_the_surface_is_matched_and_one_beside_its_bor
   const auto above = reg::find_closest(cloud, Vec3(0.5, 0.5, 0.3), n, limits(1));
   BOOST_TEST(above.weight > 0.99);
   BOOST_TEST(std::abs(above.plane_distance) == 0.3, boost::test_tools::tolerance(1e-9));
+  const Vec3 foot(10 / 19.0, 9 / 19.0, 0);
+  const auto straight = reg::find_closest(cloud, foot + 0.3 * n, n, limits(1));
+  BOOST_TEST((cloud.points()[straight.index] == foot));
+  BOOST_TEST(straight.squared_distance == 0.09, boost::test_tools::tolerance(1e-12));
   BOOST_TEST(reg::find_closest(cloud, Vec3(1.3, 0.5, 0.1), n, limits(1)).weight == 0);
   BOOST_TEST(reg::find_closest(cloud, Vec3(0.5, 0.5, 0.3), n, limits(0.2)).weight == 0);
 }
@@ -93,6 +97,10 @@ BOOST_AUTO_TEST_CASE(duplicates_of_a_target_are_dropped_and_indices_are_those_of
   BOOST_TEST(target.all.size() == n);
   for (std::size_t k = 0; k < n; ++k)
     BOOST_TEST(points[target.input[k]] == target.all.points()[k]);
+  BOOST_TEST(target.fine.size() > 1u);
+  BOOST_TEST_REQUIRE(target.fine_normals.size() == target.fine.size());
+  for (const Vec3& normal : target.fine_normals)
+    BOOST_TEST(std::abs(normal.z()) == 1, boost::test_tools::tolerance(1e-12));
 }
 
 BOOST_AUTO_TEST_CASE(isolated_points_are_dropped_and_a_step_of_the_density_is_not)
