@@ -155,7 +155,7 @@ BOOST_AUTO_TEST_CASE(a_geodesic)
                Tree between;
                std::vector<Point> points;
                pcs::orl_geodesic<CGAL::Sequential_tag>(a, one, b, two, 0.5, between, points);
-             }) < 400);
+             }) < 500);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -105,13 +105,13 @@ def expand(text, folder):
     return words
 
 
-def scan(programs, folder, name, seed):
-    """Makes the scan and the skeleton of a small tree."""
+def scan(programs, folder, name, seed, stations=3, degrees=0.3):
+    """Makes the scan, the skeleton and the report of a small tree."""
     subprocess.run(
         [
-            os.path.join(programs, "virtual_scan"), "--preset", "fruit", "--stations", "3",
-            "--step-degrees", "0.3", "--seed", str(seed), "--output", name + ".xyz",
-            "--swc", name + ".swc", "--quiet",
+            os.path.join(programs, "virtual_scan"), "--preset", "fruit", "--stations",
+            str(stations), "--step-degrees", str(degrees), "--seed", str(seed), "--output",
+            name + ".xyz", "--swc", name + ".swc", "--report", name + ".json", "--quiet",
         ],
         cwd=folder, check=True,
     )  # fmt: skip
@@ -133,6 +133,10 @@ def make_inputs(programs, folder):
     for name, rows in trees.items():
         write_ply(os.path.join(folder, name + ".ply"), rows)
     shutil.copy(os.path.join(folder, "A.ply"), os.path.join(folder, "SCAN.ply"))
+    # the tree of A, from one station
+    write_ply(
+        os.path.join(folder, "STATION.ply"), scan(programs, folder, "STATION", 1, 1, degrees=0.1)
+    )
     for name, copy in (("A", "oak_1"), ("B", "oak_2"), ("C", "unknown")):
         shutil.copy(os.path.join(folder, name + ".swc"), os.path.join(folder, copy + ".swc"))
     stand = [
@@ -159,9 +163,21 @@ def make_inputs(programs, folder):
     os.makedirs(os.path.join(folder, "examples", "gallery"))
 
 
+def place_scanner(words, folder):
+    """Replaces the position of the scanner and the scan by those of a scan from one station."""
+    if "--scanner" not in words:
+        return words
+    with open(os.path.join(folder, "STATION.json"), encoding="ascii") as file:
+        position = json.load(file)["stations"][0]
+    first = words.index("--scanner") + 1
+    words = words[:first] + [str(x) for x in position] + words[first + 3 :]
+    return ["STATION.ply" if word == "SCAN.ply" else word for word in words]
+
+
 def run(text, programs, folder):
     """Returns what is wrong with the command, or nothing."""
     words = ["SCAN.ply" if word == "SCAN" else word for word in expand(text, folder)]
+    words = place_scanner(words, folder)
     done = subprocess.run(
         [os.path.join(programs, os.path.basename(words[0])), *words[1:]],
         cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False,

@@ -43,11 +43,12 @@ struct Matching_weights
                                  ///< length, whose cost is halved by saturation [-]
   double unmatched = 0.2;        ///< of the length of an unmatched subtree [-]
   double length = 1;             ///< of a difference of lengths, in units of `unmatched` [-]
-  //! of the rotation of a branch relative to its parent [-]. At most half of `unmatched`, so that a
-  //! straight branch remains matched however far it is rotated
-  double rotation = 0.1;
-  double children = 0;              ///< of child directions in the estimate of this rotation [-]
-  double inherited_rotation = 0.05; ///< of the parent's rotation in the same estimate [-]
+  //! of the rotation of a branch relative to its parent [-]. If it exceeds half of `unmatched`,
+  //! a straight branch without children stays unmatched when it is rotated by more than
+  //! `acos(1 - unmatched / rotation)`, by default 90 degrees
+  double rotation = 0.2;
+  double children = 0;             ///< of child directions in the estimate of this rotation [-]
+  double inherited_rotation = 0.1; ///< of the parent's rotation in the same estimate [-]
   bool is_rotation_inherited =
       true; ///< whether rotations of parents are passed on to their children
   //! whether the members of a pair or whorl, such as opposite branches, have partners in one whorl,
