@@ -377,11 +377,11 @@ BOOST_AUTO_TEST_CASE(opposite_branches_stay_opposite)
   BOOST_TEST(report.number_of_broken_whorls[0] <= 1u);
   BOOST_TEST(report.number_of_broken_whorls[1] <= 1u);
   BOOST_TEST(build(free, a, b, false).number_of_broken_whorls[0] > 10u);
-  // also in the tree half-way
+  // also in the tree half-way, where branches without a partner stand between them
   Tree half;
   space.skeleton(space.geodesic(0, 1, 0.5), half);
   BOOST_TEST(10 * build(middle, half, half, true).number_of_whorls[0] >=
-             9 * report.number_of_whorls[0]);
+             8 * report.number_of_whorls[0]);
   // opposite branches of one tree have partners that are alternate: the report says so
   Space mixed;
   report = build(mixed, a, opposite_tree(3, 1), true);
