@@ -161,6 +161,14 @@ BOOST_AUTO_TEST_CASE(energies_do_not_change_with_place_stand_and_unit)
   BOOST_TEST(here.position_term(0.3, 0.5, 0.2, 0.7, 1) ==
              here.position_term(0.5, 0.3, 0.7, 0.2, 1));
   BOOST_TEST(here.position_term(0.3, 0.5, 0.4, 0.4, 1) == 0);
+  // The published energy has a fixed weight.
+  Matching_weights published;
+  published.is_published = true;
+  for (const double weight : {1., 3.}) {
+    published.position = weight;
+    const Matching_energy energy = energy_of(one, two, published);
+    BOOST_TEST(std::abs(energy.position_term(0.3, 0.5, 0.2, 0.7, 2) - 2 * 0.25) < 1e-15);
+  }
 }
 
 BOOST_AUTO_TEST_CASE(what_grew_on_at_the_tip_costs_as_if_it_were_single)

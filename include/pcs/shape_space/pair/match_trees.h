@@ -27,6 +27,9 @@
 namespace pcs {
 namespace shape_space {
 
+/// Relative error of lengths, moments and fractions of the possible cost by rounding. [-]
+constexpr double matching_rounding = 1e-9;
+
 /// Result of a matching of two trees in numbers.
 struct Matching_cost
 {
@@ -85,8 +88,6 @@ private:
   // the longest path of a tomato plant is its stem and one of its leaves, which changes from day to
   // day; but among all paths, some path has a slightly lower cost by chance
   static constexpr double wide_fork_ratio = 0.3;
-
-  static constexpr double rounding = 1e-9; // of a fraction of the possible cost
 
   static constexpr double any_cost = std::numeric_limits<double>::infinity();
 
@@ -206,7 +207,7 @@ private:
 
   void match_at_tips()
   {
-    if (m_weights.growth != Branch_growth::at_tips && m_cost.share <= rounding)
+    if (m_weights.growth != Branch_growth::at_tips && m_cost.share <= matching_rounding)
       return; // nothing is left to explain
     const double highest = std::max(m_trees[0]->heights[0], m_trees[1]->heights[0]);
     const Range from = range(highest, highest);
@@ -253,11 +254,10 @@ inline double second_moment(const Rooted_tree& tree)
 /// more compact. Differences within rounding do not count.
 inline bool is_clearly_shorter(const Rooted_tree& one, const Rooted_tree& two)
 {
-  constexpr double rounding = 1e-9;
   for (const auto& [a, b] : {std::make_pair(one.weights[0], two.weights[0]),
                              std::make_pair(one.heights[0], two.heights[0]),
                              std::make_pair(second_moment(one), second_moment(two))})
-    if (std::abs(a - b) > rounding * (a + b))
+    if (std::abs(a - b) > matching_rounding * (a + b))
       return a < b;
   return false;
 }
@@ -277,12 +277,11 @@ Matching_cost match_trees(const std::array<const Rooted_tree*, 2>& trees,
                           Common_topology& result)
 {
   using Matching = Tree_matching<ConcurrencyTag>;
-  constexpr double rounding = 1e-9;
   Matching_cost cost;
   cost.share = std::numeric_limits<double>::infinity();
   if (!internal::is_clearly_shorter(*trees[1], *trees[0])) {
     cost = Matching(trees, weights, alignment, progress, result).run();
-    if (cost.share <= rounding || progress.is_cancelled() ||
+    if (cost.share <= matching_rounding || progress.is_cancelled() ||
         internal::is_clearly_shorter(*trees[0], *trees[1]))
       return cost;
   }
@@ -293,7 +292,7 @@ Matching_cost match_trees(const std::array<const Rooted_tree*, 2>& trees,
     result = Common_topology();
     return cost_back;
   }
-  if (!(cost_back.share < cost.share * (1 - rounding)))
+  if (!(cost_back.share < cost.share * (1 - matching_rounding)))
     return cost;
   cost_back.yaw = 0 - cost_back.yaw; // no negative zero
   std::swap(back.paths[0], back.paths[1]);
