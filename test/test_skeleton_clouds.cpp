@@ -285,6 +285,36 @@ BOOST_AUTO_TEST_CASE(a_lamp_post_is_a_trunk)
   BOOST_CHECK_GT(arm.at(winner(arm)), 800u); // the arm is a single branch, or the end of the trunk
 }
 
+BOOST_AUTO_TEST_CASE(a_trunk_hidden_by_leaves_is_continued_to_the_top)
+{
+  Cloud points = cylinder(9000, 0.1, 6);
+  const std::size_t n = points.size();
+  append(points, cylinder(3000, 0.8, 4, Point(0, 0, 6))); // leaves
+  points = Jitter(0.001)(points);
+  std::map<Point, bool> is_wood;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    is_wood[points[i]] = i < n;
+  const auto np = pcs::parameters::wood_map(boost::make_assoc_property_map(is_wood));
+  Tree tree;
+  const auto report = pcs::extract_tree_skeleton(points, tree, np);
+  check_is_a_tree(tree);
+  BOOST_TEST(std::abs(report.hidden_trunk_length - 4) < 0.5);
+  BOOST_TEST(std::abs(report.by_order.front().length - 10) < 0.3);
+  // the volume of the visible cylinder and of the cone
+  const double cylinder = CGAL_PI * 0.01 * 6, cone = CGAL_PI * 0.01 * 4 / 3;
+  BOOST_TEST(std::abs(report.total.volume - cylinder - cone) < 0.05 * cylinder);
+  for (std::size_t v = 1; v < num_vertices(tree); ++v)
+    BOOST_TEST(tree[v].is_measured == (tree[v].point.z() < 6.1));
+
+  const auto measured = pcs::extract_tree_skeleton(points, tree, np.do_continue_trunk(false));
+  BOOST_TEST(measured.hidden_trunk_length == 0);
+  BOOST_TEST(std::abs(measured.total.volume - cylinder) < 0.05 * cylinder);
+  // without leaves, nothing hides a trunk
+  Cloud stem = Cloud(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(n));
+  append(stem, pcs_test::cylinder(400, 0.004, 4, Point(0, 0, 6)));
+  BOOST_TEST(pcs::extract_tree_skeleton(stem, tree).hidden_trunk_length == 0);
+}
+
 BOOST_AUTO_TEST_CASE(the_stems_of_a_bush_are_branches)
 {
   Cloud points;

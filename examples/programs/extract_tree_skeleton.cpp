@@ -187,6 +187,7 @@ pcs::Skeleton_report extract(const std::string& input,
                       .station_map(station)
                       .do_remove_ground(!options.do_keep_ground)
                       .wood_map(is_wood)
+                      .do_continue_trunk(!options.do_keep_trunk)
                       .do_remove_leaves(leaf_removal(options, !wood.empty()))
                       .scanner_positions(scanners)
                       .beam_width(options.beam_milliradians < 0 ? pcs::default_beam_width

@@ -52,6 +52,7 @@
   PCS_OWN(do_remove_ground)                                                                        \
   PCS_OWN(wood_map)                                                                                \
   PCS_OWN(do_remove_leaves)                                                                        \
+  PCS_OWN(do_continue_trunk)                                                                       \
   /* extract_tree_skeleton(): results at the points */                                             \
   PCS_OWN(point_is_leaf_map)                                                                       \
   PCS_OWN(point_branch_map)                                                                        \

@@ -164,6 +164,11 @@ public:
           where leaves are detected. Used by the method `chains` only
         \nptype `bool` or `Leaf_removal`
         \npdefault `Leaf_removal::where_found`; `Leaf_removal::never` if `wood_map` is given
+      \np{do_continue_trunk} whether a trunk that leaves hide is continued straight to the top of
+          the tree, with inferred radii: `is_measured` of its nodes is `false`, and
+          `Skeleton_report::hidden_trunk_length` is its length. Used by the method `chains` only
+        \nptype `bool`
+        \npdefault `true`
       \np{point_branch_map} written by `extract()`: index of the branch of a point in the result, or
           `npos`
         \nptype model of `WritablePropertyMap`, key: element of `points`, value: an integer type

@@ -70,10 +70,9 @@ set(root_skeleton
   surface/Surface_builder.h)
 set(skeleton_session
   axes/fit_axes.h
-  axes/reassign_points.h
   branching/build_branch_tree.h
-  branching/level_set_skeleton.h
   clutter/remove_clutter.h
+  continuation/continue_hidden_trunk.h
   continuation/follow_thick_ends.h
   input/Session_hints.h
   layers/trace_layers.h
@@ -85,6 +84,14 @@ set(skeleton_session
   resampling/resample_scan.h
   result/describe_tree.h
   scan/Point_labels.h
+  scan/thin_dense_points.h
+  slices/section_skeleton.h
+  stages)
+set(skeleton_stages
+  Session_options.h
+  Session_state.h
+  axes/reassign_points.h
+  branching/level_set_skeleton.h
   scan/measure_coordinate_step.h
   scan/prepare_scan.h
   scan/thin_dense_points.h

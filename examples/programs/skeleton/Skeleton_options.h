@@ -41,9 +41,9 @@ struct Skeleton_options
   std::vector<std::string> given_numbers; ///< the options of those that are given
   std::size_t root_number = 1;            ///< of the tree in the file of the given skeleton
   int number_of_resamples = 4;
-  bool do_keep_stations = false, do_keep_ground = false, do_remove_leaves = false,
-       do_keep_leaves = false, do_separate = false, do_use_all = false, do_fit_all = false,
-       do_estimate_normals = false, is_quiet = false;
+  bool do_keep_stations = false, do_keep_ground = false, do_keep_trunk = false,
+       do_remove_leaves = false, do_keep_leaves = false, do_separate = false, do_use_all = false,
+       do_fit_all = false, do_estimate_normals = false, is_quiet = false;
 
   bool has_mesh() const
   {
@@ -84,6 +84,7 @@ inline nlohmann::ordered_json to_json(const Skeleton_options& o)
                                  {"wood", o.wood},
                                  {"stations", o.do_keep_stations ? "keep" : o.stations},
                                  {"keep_ground", o.do_keep_ground},
+                                 {"keep_trunk", o.do_keep_trunk},
                                  {"leaves",
                                   o.do_keep_leaves     ? "keep"
                                   : o.do_remove_leaves ? "remove"
@@ -249,6 +250,9 @@ inline void declare(CLI::App& app, Skeleton_options& options)
           options.given_numbers.emplace_back(number.option);
         });
   app.add_flag("--keep-ground", options.do_keep_ground, "keep ground points");
+  app.add_flag("--keep-trunk",
+               options.do_keep_trunk,
+               "do not continue a trunk that leaves hide to the top of the tree");
   app.add_flag("--remove-leaves",
                options.do_remove_leaves,
                "remove leaves even without evidence of many leaves");

@@ -131,6 +131,7 @@ inline nlohmann::ordered_json to_json(const std::string& input, const pcs::Skele
   json["height"] = r.height;
   json["root_elevation"] = r.root_elevation;
   json["max_root_distance"] = r.max_root_distance;
+  json["hidden_trunk_length"] = r.hidden_trunk_length;
   json["breast_height"] = r.breast_height;
   json["diameter_at_breast_height"] = nullptr;
   if (r.diameter_at_breast_height > 0) // 0 if the tree is lower

@@ -141,6 +141,9 @@ struct Skeleton_report
   double root_elevation = 0;
   bool is_root_given = false;   ///< whether `root_position` was given
   double max_root_distance = 0; ///< from the root to the farthest node [L]
+  //! inferred length of the trunk at the top of the tree, where leaves hide it; 0: the whole trunk
+  //! was found [L]
+  double hidden_trunk_length = 0;
   //! diameter of the thickest stem at breast height, from a line fitted to its radii between 1.1
   //! and 1.5 m to reduce the effect of bark and noise; 0: the tree is lower [L]
   double diameter_at_breast_height = 0;
@@ -269,10 +272,13 @@ inline void warn_of_shape(const Skeleton_report& r, std::vector<std::string>& se
                         "radii and volume are rough guesses");
 }
 
-/// Adds warnings about the foot and the stems.
+/// Adds warnings about the foot, the trunk and the stems.
 inline void warn_of_stems(const Skeleton_report& r, std::vector<std::string>& sentences)
 {
   constexpr double max_elevation = 0.1; // root elevation / height above the lowest points [-]
+  if (r.hidden_trunk_length > 0)
+    sentences.push_back("leaves hide the upper " + short_text(r.hidden_trunk_length) +
+                        " of the trunk, which is inferred: a cone to the top of the tree");
   if (r.root_elevation > max_elevation * (r.root_elevation + r.height))
     sentences.push_back("the root is " + short_text(r.root_elevation) +
                         (r.is_root_given

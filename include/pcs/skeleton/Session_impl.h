@@ -8,10 +8,14 @@
 #include <pcs/internal/Stage_timer.h>
 #include <pcs/internal/progress.h>
 #include <pcs/skeleton/Session.h>
-#include <pcs/skeleton/Session_method.h>
 #include <pcs/skeleton/Session_options.h>
-#include <pcs/skeleton/Session_stages.h>
 #include <pcs/skeleton/Session_state.h>
+#include <pcs/skeleton/stages/axis_stage.h>
+#include <pcs/skeleton/stages/branch_stage.h>
+#include <pcs/skeleton/stages/choose_method.h>
+#include <pcs/skeleton/stages/neighbor_stage.h>
+#include <pcs/skeleton/stages/path_stage.h>
+#include <pcs/skeleton/stages/stage_progress.h>
 
 #include <cstddef>
 #include <cstdint>

@@ -8,6 +8,7 @@
 #include <pcs/skeleton/axes/fit_axes.h>
 #include <pcs/skeleton/branching/build_branch_tree.h>
 #include <pcs/skeleton/clutter/remove_clutter.h>
+#include <pcs/skeleton/continuation/continue_hidden_trunk.h>
 #include <pcs/skeleton/continuation/follow_thick_ends.h>
 #include <pcs/skeleton/input/Session_hints.h>
 #include <pcs/skeleton/layers/trace_layers.h>
@@ -39,6 +40,7 @@ struct Session_options : Session_hints
   Layer_options layers;
   Axis_options axes;
   Thick_end_options thick_ends;
+  Hidden_trunk_options hidden_trunk;
   Leaf_options leaves;
   Blade_options blades;
   Branching_options branching;

@@ -6,7 +6,6 @@
 #define PCS_SKELETON_SESSION_STATE_H
 
 #include <pcs/core/Skeleton_report.h>
-#include <pcs/skeleton/Session.h>
 #include <pcs/skeleton/Session_options.h>
 #include <pcs/skeleton/scan/Point_labels.h>
 #include <pcs/skeleton/slices/section_skeleton.h>

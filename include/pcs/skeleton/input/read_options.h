@@ -226,6 +226,7 @@ Input_options read_skeleton_options(const NamedParameters& np, const std::string
                              tags::do_remove_ground_t,
                              tags::wood_map_t,
                              tags::do_remove_leaves_t,
+                             tags::do_continue_trunk_t,
                              tags::point_is_leaf_map_t,
                              tags::point_branch_map_t,
                              tags::point_residual_map_t,
@@ -243,6 +244,9 @@ Input_options read_skeleton_options(const NamedParameters& np, const std::string
   static_assert(
       internal::is_parameter_v<bool, NamedParameters, internal::tags::do_register_stations_t>,
       "pcs::extract_tree_skeleton(): named parameter `do_register_stations` must be a bool");
+  static_assert(
+      internal::is_parameter_v<bool, NamedParameters, internal::tags::do_continue_trunk_t>,
+      "pcs::extract_tree_skeleton(): named parameter `do_continue_trunk` must be a bool");
   Input_options options = internal::read_common_options(np, caller);
   Session_hints& hints = options.hints;
   internal::read_root(np, caller, hints);
@@ -256,6 +260,7 @@ Input_options read_skeleton_options(const NamedParameters& np, const std::string
   hints.do_register_stations = true;
   internal::read_parameter(np, internal::tags::do_register_stations, hints.do_register_stations);
   internal::read_leaf_removal(np, hints);
+  internal::read_parameter(np, internal::tags::do_continue_trunk, hints.do_continue_trunk);
   const auto resamples =
       pcs::internal::choose(np, internal::tags::number_of_resamples, options.number_of_resamples);
   constexpr bool is_integer = std::is_integral_v<std::decay_t<decltype(resamples)>>;

@@ -2,14 +2,16 @@
 // SPDX-License-Identifier: BSL-1.0
 // Choice between the methods `chains` and `level_sets`, by leaf blades.
 
-#ifndef PCS_SKELETON_SESSION_METHOD_H
-#define PCS_SKELETON_SESSION_METHOD_H
+#ifndef PCS_SKELETON_STAGES_CHOOSE_METHOD_H
+#define PCS_SKELETON_STAGES_CHOOSE_METHOD_H
 
 #include <pcs/core/Skeleton_options.h>
 #include <pcs/internal/progress.h>
 #include <pcs/skeleton/Session_options.h>
-#include <pcs/skeleton/Session_stages.h>
 #include <pcs/skeleton/Session_state.h>
+#include <pcs/skeleton/stages/neighbor_stage.h>
+#include <pcs/skeleton/stages/path_stage.h>
+#include <pcs/skeleton/stages/stage_progress.h>
 
 #include <algorithm>
 #include <vector>
@@ -81,4 +83,4 @@ bool choose_method(Session_state<Tag>& s, pcs::internal::Progress& progress)
 } // namespace skeleton
 } // namespace pcs
 
-#endif // PCS_SKELETON_SESSION_METHOD_H
+#endif // PCS_SKELETON_STAGES_CHOOSE_METHOD_H
