@@ -141,7 +141,7 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_and_touches_no_file)
 {
   refuses(*this, "--seed 1", "--output");
   refuses(*this, "--output scan.ply --preset oak", "unknown preset 'oak'");
-  refuses(*this, "--output scan.ply --step-degrees 0", "angular_step");
+  refuses(*this, "--output scan.ply --step-degrees 0", "--step-degrees");
   refuses(*this, "--output scan.ply --step-degrees abc", "--step-degrees");
   refuses(*this, "--output scan.ply --stations 0", "--stations");
   refuses(*this, "--output scan.ply --age 2", "age");

@@ -118,14 +118,17 @@ inline void declare(CLI::App& app, Scan_options& o)
   app.add_option("--arc-degrees",
                  o.arc_degrees,
                  "arc over which stations are spread; 60: one-sided")
+      ->check(CLI::Range(0.0, 360.0))
       ->capture_default_str()
       ->group(scanner);
   app.add_option("--first-degrees", o.first_degrees, "azimuth at which the arc begins")
       ->group(scanner);
   app.add_option("--step-degrees", o.step_degrees, "angle between beams")
+      ->check(CLI::Range(6e-5, 57.0)) // those of `Virtual_scanner`, like the next
       ->capture_default_str()
       ->group(scanner);
   app.add_option("--beam-milliradians", o.beam_milliradians, "beam divergence")
+      ->check(CLI::Range(0.0, 100.0))
       ->capture_default_str()
       ->group(scanner);
   app.add_option("--noise", s.range_noise, "standard deviation of ranges")
