@@ -287,30 +287,33 @@ BOOST_AUTO_TEST_CASE(a_lamp_post_is_a_trunk)
 
 BOOST_AUTO_TEST_CASE(a_trunk_hidden_by_leaves_is_continued_to_the_top)
 {
+  // a crown of random points from 5 to 10 m around a stem of 6 m
   Cloud points = cylinder(9000, 0.1, 6);
   const std::size_t n = points.size();
-  append(points, cylinder(3000, 0.8, 4, Point(0, 0, 6))); // leaves
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> across(-1, 1), up(5, 10);
+  while (points.size() < 2 * n) {
+    const double x = across(random), y = across(random), z = up(random);
+    if (x * x + y * y < 1 && x * x + y * y > 0.02)
+      points.emplace_back(x, y, z);
+  }
   points = Jitter(0.001)(points);
-  std::map<Point, bool> is_wood;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    is_wood[points[i]] = i < n;
-  const auto np = pcs::parameters::wood_map(boost::make_assoc_property_map(is_wood));
+  const auto np = pcs::parameters::do_remove_leaves(true);
   Tree tree;
   const auto report = pcs::extract_tree_skeleton(points, tree, np);
   check_is_a_tree(tree);
-  BOOST_TEST(std::abs(report.hidden_trunk_length - 4) < 0.5);
+  BOOST_TEST(std::abs(report.hidden_trunk_length - 4) < 0.7);
   BOOST_TEST(std::abs(report.by_order.front().length - 10) < 0.3);
-  // the volume of the visible cylinder and of the cone
+  // the volume of the visible cylinder, and at most that of the cone
   const double cylinder = CGAL_PI * 0.01 * 6, cone = CGAL_PI * 0.01 * 4 / 3;
-  BOOST_TEST(std::abs(report.total.volume - cylinder - cone) < 0.05 * cylinder);
-  for (std::size_t v = 1; v < num_vertices(tree); ++v)
-    BOOST_TEST(tree[v].is_measured == (tree[v].point.z() < 6.1));
+  BOOST_TEST(report.by_order.front().volume > 0.97 * cylinder);
+  BOOST_TEST(report.by_order.front().volume < 1.1 * (cylinder + cone));
 
   const auto measured = pcs::extract_tree_skeleton(points, tree, np.do_continue_trunk(false));
   BOOST_TEST(measured.hidden_trunk_length == 0);
-  BOOST_TEST(std::abs(measured.total.volume - cylinder) < 0.05 * cylinder);
+  BOOST_TEST(measured.by_order.front().volume < 1.05 * cylinder);
   // without leaves, nothing hides a trunk
-  Cloud stem = Cloud(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(n));
+  Cloud stem(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(n));
   append(stem, pcs_test::cylinder(400, 0.004, 4, Point(0, 0, 6)));
   BOOST_TEST(pcs::extract_tree_skeleton(stem, tree).hidden_trunk_length == 0);
 }

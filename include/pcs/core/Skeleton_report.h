@@ -277,8 +277,9 @@ inline void warn_of_stems(const Skeleton_report& r, std::vector<std::string>& se
 {
   constexpr double max_elevation = 0.1; // root elevation / height above the lowest points [-]
   if (r.hidden_trunk_length > 0)
-    sentences.push_back("leaves hide the upper " + short_text(r.hidden_trunk_length) +
-                        " of the trunk, which is inferred: a cone to the top of the tree");
+    sentences.push_back(
+        "leaves hide the upper " + short_text(r.hidden_trunk_length) +
+        " of the trunk, which is inferred: it is continued straight to the top of the tree");
   if (r.root_elevation > max_elevation * (r.root_elevation + r.height))
     sentences.push_back("the root is " + short_text(r.root_elevation) +
                         (r.is_root_given

@@ -55,13 +55,14 @@ struct Crown
     add(b, seat, tree.nodes[seat].point, to, r, r);
     return b;
   }
-  double run()
+  double run(double top = 11)
   {
     tree.node_of_point.assign(scan.points.size(), none);
     tree.node_of_point.back() = static_cast<Index>(tree.nodes.size() - 1);
     return continue_hidden_trunk(
         scan,
         [](Index) { return true; },
+        top,
         breast_height,
         Hidden_trunk_options(),
         tree);
@@ -199,6 +200,7 @@ BOOST_AUTO_TEST_CASE(a_tree_below_breast_height_is_kept)
   BOOST_TEST(continue_hidden_trunk(
                  crown.scan,
                  [](Index) { return true; },
+                 11,
                  breast_height,
                  Hidden_trunk_options(),
                  empty) == 0);

@@ -26,7 +26,7 @@ struct Hidden_trunk_options
   double before = 3;       ///< length below a section over which its radius is the median
   double direction = 20;   ///< length below a section that gives its direction
   double missing = 0.5;    ///< least fraction of the cross-section area without continuation [-]
-  double thinnest = 0.2;   ///< least radius, in radii at breast height
+  double thinnest = 0.2;   ///< least radius, in radii at breast height, or of the cone
   double spread = 0.5;     ///< tangent of the half angle of the cone that contains the top [-]
   double shortest = 12;    ///< least length of the hidden part
   double steepest = 0.8;   ///< least cosine of the last visible part and its direction [-]
@@ -160,25 +160,41 @@ private:
   std::size_t m_first = 0;     // node at breast height
 };
 
-/// Returns the highest point without the highest 1/1000, which may be strays, among those for which
-/// `is_tree(i)` holds in a cone around the ray from `apex` along `axis`; `none` if there is none.
+/// Returns the highest point up to the height `top` [L] for which `is_tree(i)` holds in a cone
+/// around the ray from `apex` along `axis`; `none` if there is none.
 template <class IsTree>
-Index top_of_cone(const Scan& scan,
-                  const IsTree& is_tree,
-                  const Vec3& apex,
-                  const Vec3& axis,
-                  double tangent)
+Index highest_in_cone(const Scan& scan,
+                      const IsTree& is_tree,
+                      double top,
+                      const Vec3& apex,
+                      const Vec3& axis,
+                      double tangent)
 {
-  std::vector<std::pair<double, Index>> heights;
+  Index highest = none;
   for (Index i = 0; i < scan.size(); ++i) {
+    const double z = scan.points[i].z();
+    if (z > top || (highest != none && !(z > scan.points[highest].z())) || !is_tree(i))
+      continue;
     const Vec3 v = scan.points[i] - apex;
     const double t = v.dot(axis);
-    if (t > 0 && (v - t * axis).norm() < tangent * t && is_tree(i))
-      heights.emplace_back(scan.points[i].z(), i);
+    if (t > 0 && (v - t * axis).norm() < tangent * t)
+      highest = i;
   }
-  if (heights.empty())
-    return none;
-  return pcs::internal::value_of_rank(heights, heights.size() - 1 - heights.size() / 1000).second;
+  return highest;
+}
+
+/// Returns the sum of the squared radii of the edges that rise through the plane at the distance
+/// `s` from `origin` along `direction`, with unit length [L^2].
+inline double area_at(const Branch_tree& tree, const Vec3& origin, const Vec3& direction, double s)
+{
+  double area = 0;
+  for (Index v = 1; v < tree.nodes.size(); ++v) {
+    const Branch_node& node = tree.nodes[v];
+    if (!tree.is_base(v) && direction.dot(tree.nodes[node.parent].point - origin) < s &&
+        direction.dot(node.point - origin) >= s)
+      area += node.radius * node.radius;
+  }
+  return area;
 }
 
 /// Replaces the trunk beyond its node `end` by the nodes `tip`. What was beyond becomes a branch of
@@ -262,15 +278,22 @@ replace_trunk_tip(std::size_t end, const std::vector<Branch_node>& tip, Branch_t
   over the nodes `j` with `w <= s_j - s_k <= 3 w` for `w = window R_k`, the cosines `cos_kj` of the
   directions to them and of the trunk below, and the branches `c` on the trunk up to `s_k + w`. The
   trunk ends where `m_k` is at least `missing` for the first time above breast height. It continues
-  to the highest points within a cone around the direction of the trunk. The radius decreases
-  linearly from `R_k sqrt(m_k)`. The former continuation becomes a branch.
+  to the highest point within a cone around the direction of the trunk. At the fraction `t` [-] of
+  its length `l` [L], its radius `r` [L] is that of the wood that the branches do not explain,
 
-  New nodes count as inferred. `is_tree(i)` holds for the points of wood and leaves; z points
-  upwards. O(points + nodes).
+      r^2 = max(R_k^2 (1 - t)^2 - sum_e r_e^2, (thinnest R_k (1 - t))^2),
+
+  where the edges `e` of other branches rise through the plane at the distance `t l`. The former
+  continuation becomes a branch.
+
+  New nodes count as inferred. `is_tree(i)` holds for the points of wood and leaves, `top_of_tree`
+  is the height of its top [L], above which points are strays. z points upwards. O(points + nodes * new
+  nodes).
 */
 template <class IsTree>
 double continue_hidden_trunk(const Scan& scan,
                              const IsTree& is_tree,
+                             double top_of_tree,
                              double breast_height,
                              const Hidden_trunk_options& rules,
                              Branch_tree& tree)
@@ -282,11 +305,12 @@ double continue_hidden_trunk(const Scan& scan,
   if (!found)
     return 0;
   const Branch_node& last = tree.nodes[tree.branches.front().nodes[found->end]];
-  const Index top = internal::top_of_cone(scan,
-                                          is_tree,
-                                          last.point,
-                                          trunk.direction_to(found->end),
-                                          rules.spread);
+  const Index top = internal::highest_in_cone(scan,
+                                              is_tree,
+                                              top_of_tree,
+                                              last.point,
+                                              trunk.direction_to(found->end),
+                                              rules.spread);
   if (top == none)
     return 0;
   const Vec3 rest = scan.points[top] - last.point;
@@ -296,10 +320,12 @@ double continue_hidden_trunk(const Scan& scan,
   const auto steps = static_cast<std::size_t>(std::ceil(length / (rules.step * found->radius)));
   std::vector<Branch_node> tip(steps);
   for (std::size_t k = 1; k <= steps; ++k) {
-    const double t = double(k) / double(steps + 1); // the last node is not a point
+    const double share = double(k) / double(steps);
+    const double cone = found->radius * (1 - double(k) / double(steps + 1)); // not 0 at the end
+    const double area = internal::area_at(tree, last.point, rest / length, share * length);
     Branch_node& node = tip[k - 1];
-    node.point = last.point + double(k) / double(steps) * rest;
-    node.radius = (1 - t) * found->radius * std::sqrt(found->missing);
+    node.point = last.point + share * rest;
+    node.radius = std::sqrt(std::max(cone * cone - area, std::pow(rules.thinnest * cone, 2)));
     node.radius_error = node.radius;
   }
   internal::replace_trunk_tip(found->end, tip, tree);

@@ -14,6 +14,8 @@
 #include <pcs/skeleton/stages/path_stage.h>
 #include <pcs/skeleton/stages/stage_progress.h>
 
+#include <algorithm>
+
 namespace pcs {
 namespace skeleton {
 
@@ -30,9 +32,13 @@ bool is_tree_point(const Session_state<Tag>& s, Index i)
 template <class Tag>
 double continue_trunk(Session_state<Tag>& s)
 {
+  double top = s.labels.top_of_leaves(s.options.up);
+  for (const Branch_node& node : s.joined.tree.nodes)
+    top = std::max(top, s.options.up.dot(node.point));
   return continue_hidden_trunk(
       s.scan,
       [&s](Index i) { return is_tree_point(s, i); },
+      top,
       s.options.breast_height,
       s.options.hidden_trunk,
       s.joined.tree);
@@ -55,7 +61,7 @@ bool build_tree(Session_state<Tag>& s, pcs::internal::Progress& progress)
   if (!o.given) { // a given skeleton is one tree, and complete
     s.report.number_of_other_stems =
         count_other_stems(s.axes, s.joined.joints, s.joined.root, s.joined.tree, o.stems);
-    if (o.do_continue_trunk && s.report.number_of_leaf_points > 0) // leaves hide wood
+    if (o.do_continue_trunk && s.leaves.has_leaves && s.leaves.rounds > 0) // leaves hide wood
       s.report.hidden_trunk_length = s.scan.frame.unit * continue_trunk(s);
   }
   return true;
