@@ -58,7 +58,9 @@ struct Matching_weights
   //! the published energy: no rotations, no whorls, `unmatched` and `position` are 1, positions in
   //! units of the parent's length
   bool is_published = false;
-  double fork_ratio = default_fork_ratio;       ///< see `default_fork_ratio` [-]
+  //! see `default_fork_ratio`. Where trees are similar, limbs are searched again with 5/8 of it and
+  //! twice as many paths, unless it is 1 [-]
+  double fork_ratio = default_fork_ratio;
   double trunk_fork_ratio = default_fork_ratio; ///< for the trunk, if smaller [-]
   //! candidates for the main path of a branch; 1: the longest path only [count]
   std::size_t number_of_paths = 6;

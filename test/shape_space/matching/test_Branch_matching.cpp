@@ -52,6 +52,24 @@ void for_each_pair(const Match& match, const Visit& visit)
     for_each_pair(*pair.branch, visit);
 }
 
+/// A tree with a limb that forks into an upper and a lower part of these lengths. Upper twigs point
+/// to one side, and lower twigs to the other.
+Rooted_tree tree_with_forked_limb(double upper, double lower)
+{
+  std::vector<Stick> sticks = {{pcs::npos, 0, Vec3(0, 0, 4), 8},
+                               {0, 3, Vec3(1.5, 0, 0)},
+                               {1, 4, upper * Vec3(0.8, 0, 0.6)},
+                               {1, 4, lower * Vec3(0.8, 0, -0.6)},
+                               {0, 1, Vec3(0, 2, 0.3)},
+                               {0, 5, Vec3(0, -2, 0.3)},
+                               {0, 6, Vec3(0, 1.5, 0.3)}};
+  for (const std::size_t at : {1u, 2u, 3u}) {
+    sticks.push_back({2, at, Vec3(0, 0.4, 0)});
+    sticks.push_back({3, at, Vec3(0, -0.4, 0)});
+  }
+  return rooted(sticks);
+}
+
 const Stick trunk{pcs::npos, 0, Vec3(0, 0, 4), 8};
 const Stick low{0, 3, Vec3(1, 0, 0.5)}, high{0, 6, Vec3(0, 0.8, 0.3)};
 
@@ -128,6 +146,22 @@ BOOST_AUTO_TEST_CASE(a_turn_of_the_whole_tree_costs_nothing_where_it_is_told)
   const auto found = matching.run(progress);
   BOOST_TEST(found->cost < 1e-6);
   BOOST_TEST((found->rotation - turn.inverse().toRotationMatrix()).norm() < 1e-6);
+}
+
+BOOST_AUTO_TEST_CASE(a_limb_follows_the_same_part_where_the_longer_one_changes)
+{
+  const Rooted_tree one = tree_with_forked_limb(1, 0.6), two = tree_with_forked_limb(0.6, 1);
+  Matching matching = matching_of(one, two);
+  pcs::internal::Progress progress;
+  const auto found = matching.run(progress);
+  std::size_t count = 0;
+  for_each_pair(*found, [&](const auto& match) {
+    const Vec3 a = one.points[matching.paths(0).paths[match.path_1].tip()];
+    const Vec3 b = two.points[matching.paths(1).paths[match.path_2].tip()];
+    ++count;
+    BOOST_TEST((a - b).norm() < 0.5); // 1.2 between the parts, 0.8 between their twigs
+  });
+  BOOST_TEST(count == 12u); // a part of the limb is a child of the limb
 }
 
 BOOST_AUTO_TEST_CASE(nothing_is_returned_above_a_limit_or_when_asked_to_stop)

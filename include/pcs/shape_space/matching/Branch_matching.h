@@ -39,7 +39,9 @@ namespace shape_space {
   Two branches are matched in several trials, each with one pair of their candidate paths. In each
   trial, children are assigned at least cost; for this, pairs of children are matched recursively.
   All pairs of trunks are first matched with one trial per pair of children, then the best pairs of
-  trunks again with more trials.
+  trunks again with more trials. If the trees turn out to be similar, all of this is repeated with
+  more paths of limbs: where lengths vary, a limb may follow another child at a fork, and all its
+  branches are then lost. Between unrelated trees, more paths have no use.
 */
 template <class ConcurrencyTag>
 class Branch_matching
@@ -113,7 +115,7 @@ public:
     const Matching_key question(start_1, start_2, rotation * m_rotation.transpose());
     if (const double* const cost = m_simple.find(question))
       return *cost;
-    for (const std::size_t k : {1u, 0u})
+    for (const std::size_t k : {3u, 2u, 1u, 0u})
       if (const Result* const answer = m_known[k].find(question))
         return *answer ? (*answer)->cost : std::numeric_limits<double>::infinity();
     return m_energy.least_cost(start_1, start_2, question.rotation() * m_rotation);
@@ -124,9 +126,11 @@ public:
   double quick_match(std::size_t start_1, std::size_t start_2, const Eigen::Matrix3d& rotation)
   {
     const Matching_key question(start_1, start_2, rotation * m_rotation.transpose());
-    const Result* answer = m_known[1].find(question);
+    for (const std::size_t k : {3u, 1u})
+      if (const Result* const answer = m_known[k].find(question))
+        return Answer(*answer).cost;
     m_effort = 1;
-    return answer ? Answer(*answer).cost : match(start_1, start_2, rotation).cost;
+    return match(start_1, start_2, rotation).cost;
   }
 
   /// Returns the cost of the most promising trunks, with one trial per pair of children. [-]
@@ -143,6 +147,49 @@ public:
   run(pcs::internal::Progress& progress,
       const double most_cost = std::numeric_limits<double>::infinity())
   {
+    use_more_limbs(false);
+    Result best = search(progress, 0, most_cost);
+    if (best && has_limbs() && unexplained_share(best->cost) < largest_share) {
+      use_more_limbs(true);
+      if (Result other = search(progress, 0.5, below(best->cost)))
+        best = std::move(other);
+      if (progress.is_cancelled())
+        return nullptr;
+    }
+    return best ? completed(*best) : nullptr;
+  }
+
+private:
+  using Trial = Matching_energy::Trial;
+  using Children = Matching_energy::Children;
+
+  static constexpr std::size_t most_at_once = 512; // children that are assigned at a time
+  static constexpr double trunk_slack = 1.05;      // relative error of the cost with one trial
+  static constexpr double largest_share = 0.5;     // unexplained, of trees with a second search
+  static constexpr double unknown = -1;            // cost that was not computed
+  static constexpr double same = 1e-12;            // costs that differ by less are equal
+
+  /// Returns the largest cost that is less than `cost` by more than rounding. Of matchings of the
+  /// same cost, the first one is kept, so that the result does not depend on rounding.
+  static double below(double cost) { return cost - same; }
+  static double rounded(double cost) { return std::round(cost / same); }
+
+  /// The cost of two children, infinite if they cost as much as unmatched [-], and their matching.
+  /// The matching of a simple pair is made at the end of the search, see `completed()`.
+  struct Answer
+  {
+    Answer(double c) : cost(c) {}
+    Answer(const Result& r) : cost(r ? r->cost : std::numeric_limits<double>::infinity()), branch(r)
+    {
+    }
+    double cost;
+    Result branch;
+  };
+
+  /// Matches all pairs of trunks, and the best ones again with more trials. Reports progress from
+  /// `begin`, for a half of the search.
+  Result search(pcs::internal::Progress& progress, double begin, double most_cost)
+  {
     const Eigen::Matrix3d rotation = m_rotation;
     // even one trial of trunks with very many children is expensive
     const auto children = [&](int t) {
@@ -155,8 +202,8 @@ public:
     Result best;
     std::size_t number_done = 0;
     const auto is_stopped = [&] {
-      return !progress(static_cast<double>(number_done++) /
-                       static_cast<double>(all > most ? all + most : all));
+      return !progress(begin + static_cast<double>(number_done++) /
+                                   static_cast<double>(2 * (all > most ? all + most : all)));
     };
     if (all > most) {
       m_effort = 1;
@@ -185,47 +232,43 @@ public:
               match_children(std::move(trial), rotation, best ? below(best->cost) : most_cost))
         best = std::move(result);
     }
-    return best ? completed(*best) : nullptr;
+    return best;
   }
 
-private:
-  using Trial = Matching_energy::Trial;
-  using Children = Matching_energy::Children;
+  bool has_limbs() const { return !paths(0).limbs.empty() || !paths(1).limbs.empty(); }
 
-  static constexpr std::size_t most_at_once = 512; // children that are assigned at a time
-  static constexpr double trunk_slack = 1.05;      // relative error of the cost with one trial
-  static constexpr double unknown = -1;            // cost that was not computed
-  static constexpr double same = 1e-12;            // costs that differ by less are equal
-
-  /// Returns the largest cost that is less than `cost` by more than rounding. Of matchings of the
-  /// same cost, the first one is kept, so that the result does not depend on rounding.
-  static double below(double cost) { return cost - same; }
-  static double rounded(double cost) { return std::round(cost / same); }
-
-  /// The cost of two children, infinite if they cost as much as unmatched [-], and their matching.
-  /// The matching of a simple pair is made at the end of the search, see `completed()`.
-  struct Answer
+  /// Selects whether limbs have the paths of the second search. Memoised matchings stay valid.
+  void use_more_limbs(bool do_use)
   {
-    Answer(double c) : cost(c) {}
-    Answer(const Result& r) : cost(r ? r->cost : std::numeric_limits<double>::infinity()), branch(r)
-    {
-    }
-    double cost;
-    Result branch;
-  };
+    if (do_use != m_uses_more_limbs)
+      m_energy.swap_limbs();
+    m_uses_more_limbs = do_use;
+  }
+
+  /// Returns the fraction of the possible cost, see `Tree_matching`. [-]
+  double unexplained_share(double cost) const
+  {
+    const double least = m_energy.least_difference(0, 0), more = single_cost(0, 0) - least;
+    return more > 0 ? (cost - least) / more : 1;
+  }
 
   Answer match(std::size_t start_1, std::size_t start_2, const Eigen::Matrix3d& rotation)
   {
     const Matching_key question(start_1, start_2, rotation * m_rotation.transpose());
     if (is_simple(start_1, start_2))
       return simple_cost(question, start_1, start_2);
-    Matching_memo<Result>& known = m_known[m_effort == 1 ? 0 : 1];
+    const bool is_limb_1 = m_uses_more_limbs && m_energy.is_limb(0, start_1),
+               is_limb_2 = m_uses_more_limbs && m_energy.is_limb(1, start_2);
+    Matching_memo<Result>& known =
+        m_known[(is_limb_1 || is_limb_2 ? 2 : 0) + (m_effort == 1 ? 0 : 1)];
     if (const Result* const answer = known.find(question))
       return *answer;
     double limit = single_cost(start_1, start_2);
     const Eigen::Matrix3d turned = question.rotation() * m_rotation;
     Result best;
-    for (Trial& trial : find_trials(start_1, start_2, turned, limit, m_effort))
+    const std::size_t number_of_trials =
+        m_effort + (is_limb_1 && is_limb_2 && m_effort > 1 ? 1 : 0);
+    for (Trial& trial : find_trials(start_1, start_2, turned, limit, number_of_trials))
       if (Result result = match_children(std::move(trial), turned, limit)) {
         limit = below(result->cost);
         best = std::move(result);
@@ -604,11 +647,12 @@ private:
 
   Matching_energy m_energy;
   Eigen::Matrix3d m_rotation = Eigen::Matrix3d::Identity(); // of tree 2
-  bool m_uses_other_trunks = false;
+  bool m_uses_other_trunks = false, m_uses_more_limbs = false;
   std::size_t m_number_of_trials, m_most_trunk_trials;
-  std::size_t m_effort = m_number_of_trials;    // trials per pair below the trunks
-  std::array<Matching_memo<Result>, 2> m_known; // with one trial per pair, and with more
-  Matching_memo<double> m_simple;               // costs of simple pairs
+  std::size_t m_effort = m_number_of_trials; // trials per pair below the trunks
+  // with one trial per pair and with more, then the same for limbs with more paths
+  std::array<Matching_memo<Result>, 4> m_known;
+  Matching_memo<double> m_simple; // costs of simple pairs
 };
 
 } // namespace shape_space

@@ -74,6 +74,13 @@ public:
     for (Branch_paths& paths : m_paths)
       paths.paths_of[0].swap(paths.other_trunks);
   }
+  /// Swaps the paths of limbs with their paths for the second search.
+  void swap_limbs()
+  {
+    for (Branch_paths& paths : m_paths)
+      for (auto& [start, more] : paths.limbs)
+        paths.paths_of[start].swap(more);
+  }
   /// Returns the axes of tree 1, to which all rotations refer, in the axes of the caller.
   const Eigen::Matrix3d& frame() const { return m_frame; }
 
@@ -83,6 +90,12 @@ public:
     const Rooted_tree& tree = *m_trees[static_cast<std::size_t>(t)];
     return (tree.weights[start] + (tree.parents[start] == none ? 0 : tree.edge_length(start))) /
            m_unit[static_cast<std::size_t>(t)];
+  }
+
+  /// Returns whether a branch is a limb: its subtree has more than `limb_share` of its tree.
+  bool is_limb(int t, std::size_t start) const
+  {
+    return start != 0 && weight(t, start) > limb_share * weight(t, 0);
   }
 
   /// Returns the nodes at which two matched branches end: their tips; or with growth at tips, the

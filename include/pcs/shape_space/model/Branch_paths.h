@@ -24,6 +24,14 @@ constexpr double tip_share = 0.05;
 /// branches depends on it. [-]
 constexpr std::size_t trunk_factor = 6;
 
+/// A limb has at least this fraction of the length of its tree. [-]
+constexpr double limb_share = 0.01;
+
+/// Factors of the fork ratio and of the number of candidates of limbs in a second search: all
+/// branches of a limb are lost if it follows another child at a fork. [-]
+constexpr double limb_ratio = 0.625;
+constexpr std::size_t limb_factor = 2;
+
 /// Branches of deeper levels have a single candidate. Each candidate of a branch begins
 /// other branches, so the number of pairs to match would grow as the square of the number of
 /// levels. [count]
@@ -54,6 +62,8 @@ struct Branch_paths
   std::vector<Branch_path> paths;
   std::vector<std::vector<std::size_t>> paths_of;
   std::vector<std::size_t> other_trunks; ///< for a second search, including much shorter trunks
+  /// For a second search: the paths of each limb by its beginning, with more candidates.
+  std::vector<std::pair<std::size_t, std::vector<std::size_t>>> limbs;
 };
 
 namespace internal {
@@ -132,7 +142,8 @@ inline std::vector<std::vector<std::size_t>> candidate_paths(const Rooted_tree& 
 /// Finds at most `maximal_number` candidate paths per branch (`trunk_factor` times as many for the
 /// trunk); 1 gives the longest paths only. The fork ratio of the trunk is `fork_ratio` or
 /// `trunk_ratio`, whichever is smaller [-]. If `other_ratio` is smaller than both [-],
-/// `other_trunks` are the trunks with this fork ratio.
+/// `other_trunks` are the trunks with this fork ratio. There are no `limbs` if `fork_ratio` or
+/// `maximal_number` is 1.
 inline Branch_paths find_branch_paths(const Rooted_tree& tree,
                                       double fork_ratio,
                                       std::size_t maximal_number,
@@ -164,13 +175,24 @@ inline Branch_paths find_branch_paths(const Rooted_tree& tree,
     std::vector<std::size_t>& paths = result.paths_of[start];
     for (auto& nodes : internal::candidate_paths(tree, start, ratio, most))
       paths.push_back(add(std::move(nodes)));
+    const auto add_new = [&](std::vector<std::size_t>&& nodes) {
+      const auto& known = result.paths_of[start];
+      const auto same = std::find_if(known.begin(), known.end(), [&](std::size_t p) {
+        return result.paths[p].nodes == nodes;
+      });
+      return same == known.end() ? add(std::move(nodes)) : *same;
+    };
     if (start == 0 && maximal_number > 1 && other_ratio < ratio)
-      for (auto& nodes : internal::candidate_paths(tree, start, other_ratio, most)) {
-        const auto known = std::find_if(paths.begin(), paths.end(), [&](std::size_t p) {
-          return result.paths[p].nodes == nodes;
-        });
-        result.other_trunks.push_back(known == paths.end() ? add(std::move(nodes)) : *known);
-      }
+      for (auto& nodes : internal::candidate_paths(tree, start, other_ratio, most))
+        result.other_trunks.push_back(add_new(std::move(nodes)));
+    if (start != 0 && most > 1 && ratio < 1 &&
+        tree.weights[start] + tree.edge_length(start) > limb_share * tree.weights[0]) {
+      std::vector<std::size_t> more;
+      for (auto& nodes :
+           internal::candidate_paths(tree, start, limb_ratio * ratio, limb_factor * most))
+        more.push_back(add_new(std::move(nodes)));
+      result.limbs.emplace_back(start, std::move(more));
+    }
   }
   return result;
 }
