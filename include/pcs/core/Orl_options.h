@@ -52,7 +52,7 @@ struct Matching_weights
   bool is_rotation_inherited =
       true; ///< whether rotations of parents are passed on to their children
   //! whether the members of a pair or whorl, such as opposite branches, have partners in one whorl,
-  //! if both parents are arranged in whorls and have at most 512 children. Trees on a path then
+  //! if both parents are arranged in whorls: at least four have the same size. Trees on a path then
   //! keep this arrangement
   bool do_keep_whorls = true;
   //! the published energy: no rotations, no whorls, `unmatched` and `position` are 1, positions in

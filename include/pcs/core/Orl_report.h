@@ -28,8 +28,8 @@ struct Orl_report
   std::array<std::size_t, 2> number_of_nodes = {0, 0};    ///< of the trees [count]
   std::array<std::size_t, 2> number_of_branches = {0, 0}; ///< of the trees, as matched [count]
   std::size_t number_of_matched_branches = 0;             ///< pairs of branches [count]
-  //! two trees: opposite pairs and whorls of branches, below parents that are arranged in whorls
-  //! [count]
+  //! two trees: opposite pairs and whorls of branches, below parents with at least four whorls of
+  //! the same size. Those of other parents are neither kept nor counted [count]
   std::array<std::size_t, 2> number_of_whorls = {0, 0};
   //! of these, whorls whose members separate on the path, because their partners are not in one
   //! whorl of the other tree [count]

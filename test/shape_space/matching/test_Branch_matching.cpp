@@ -164,6 +164,37 @@ BOOST_AUTO_TEST_CASE(a_limb_follows_the_same_part_where_the_longer_one_changes)
   BOOST_TEST(count == 12u); // a part of the limb is a child of the limb
 }
 
+BOOST_AUTO_TEST_CASE(opposite_branches_of_a_parent_with_very_many_stay_opposite)
+{
+  // the second members are long and short in turn, in another order in the second tree
+  constexpr std::size_t pairs = 300;
+  const auto tree_with_pairs = [](std::size_t phase) {
+    std::vector<Stick> sticks = {{pcs::npos, 0, Vec3(0, 0, 40), 2 * pairs + 2}};
+    for (std::size_t k = 0; k < pairs; ++k) {
+      sticks.push_back({0, 2 * k + 1, Vec3(1, 0, 0.2), 1});
+      sticks.push_back(
+          {0, 2 * k + 1, (k + phase) % 2 == 0 ? Vec3(-1, 0, 0.2) : Vec3(-0.2, 0, 0), 1});
+    }
+    return rooted(sticks);
+  };
+  const Rooted_tree one = tree_with_pairs(0), two = tree_with_pairs(1);
+  Matching matching = matching_of(one, two);
+  pcs::internal::Progress progress;
+  const auto found = matching.run(progress);
+  std::vector<std::size_t> partner(one.size(), none);
+  std::size_t count = 0, separate = 0;
+  for (const auto& pair : found->pairs) {
+    const auto& child_1 = matching.paths(0).paths[found->path_1].children[pair.child_1];
+    const auto& child_2 = matching.paths(1).paths[found->path_2].children[pair.child_2];
+    std::size_t& node = partner[one.parents[child_1.start]];
+    separate += node != none && node != two.parents[child_2.start] ? 1 : 0;
+    node = two.parents[child_2.start];
+    ++count;
+  }
+  BOOST_TEST(count > 2 * pairs - 10);
+  BOOST_TEST(separate == 0u);
+}
+
 BOOST_AUTO_TEST_CASE(nothing_is_returned_above_a_limit_or_when_asked_to_stop)
 {
   const Rooted_tree one = rooted({trunk, low, high}), two = rooted({trunk, low});

@@ -458,7 +458,7 @@ private:
 
   /// Adds the pairs of children and their gains; returns `false` if the cost is not below `limit`.
   /// Very many children are assigned in batches, the heaviest first, so time and memory grow
-  /// linearly with their number.
+  /// linearly with their number. Batches do not divide whorls.
   bool assign_children(const Branch_path& path_1,
                        const Branch_path& path_2,
                        const Children& a,
@@ -467,40 +467,73 @@ private:
                        double limit,
                        Matched_branch& result)
   {
-    std::array<std::vector<std::size_t>, 2> order = {by_index(a), by_index(b)};
-    if (std::max(a.s.size(), b.s.size()) <= most_at_once)
-      return assign_some(path_1, path_2, a, b, order[0], order[1], turned, limit, result);
-    order = {Matching_energy::by_weight(a.weight), Matching_energy::by_weight(b.weight)};
-    std::array<std::vector<std::size_t>, 2> open;
-    for (std::size_t done = 0; done < std::max(order[0].size(), order[1].size());
-         done += most_at_once) {
+    const bool may_keep = m_energy.weights().do_keep_whorls && !m_energy.weights().is_published;
+    std::array<Whorls, 2> groups;
+    if (may_keep && !(groups[0] = find_whorls(a.s)).empty())
+      groups[1] = find_whorls(b.s);
+    const bool are_whorls = !groups[1].empty();
+    if (std::max(a.s.size(), b.s.size()) <= most_at_once) {
+      const std::array<std::vector<std::size_t>, 2> all = {by_index(a), by_index(b)};
+      return assign_some(path_1,
+                         path_2,
+                         a,
+                         b,
+                         all,
+                         are_whorls ? &groups : nullptr,
+                         turned,
+                         limit,
+                         result);
+    }
+    if (!are_whorls)
+      groups = {single_whorls(a.s.size()), single_whorls(b.s.size())};
+    assign_in_batches(path_1, path_2, a, b, std::move(groups), are_whorls, turned, result);
+    return result.cost < limit;
+  }
+
+  void assign_in_batches(const Branch_path& path_1,
+                         const Branch_path& path_2,
+                         const Children& a,
+                         const Children& b,
+                         std::array<Whorls, 2> groups,
+                         bool are_whorls,
+                         const Eigen::Matrix3d& turned,
+                         Matched_branch& result)
+  {
+    sort_by_weight(a, groups[0]);
+    sort_by_weight(b, groups[1]);
+    std::array<Whorls, 2> open;
+    std::array<std::size_t, 2> next = {0, 0};
+    while (next[0] < groups[0].size() || next[1] < groups[1].size()) {
       for (std::size_t t = 0; t < 2; ++t) {
-        std::vector<std::size_t>&all = order[t], &now = open[t];
         // the lightest unmatched children are tried once more
-        if (now.size() > most_at_once)
-          now.erase(now.begin(), now.end() - most_at_once);
-        for (std::size_t k = done; k < std::min(all.size(), done + most_at_once); ++k)
-          now.push_back(all[k]);
+        while (number_of_members(open[t]) > most_at_once)
+          open[t].erase(open[t].begin());
+        for (std::size_t n = 0; next[t] < groups[t].size() && n < most_at_once; ++next[t]) {
+          n += groups[t][next[t]].size();
+          open[t].push_back(groups[t][next[t]]);
+        }
       }
+      const std::array<std::vector<std::size_t>, 2> chosen = {members_of(open[0]),
+                                                              members_of(open[1])};
+      const std::array<Whorls, 2> whorls = {renumbered(open[0]), renumbered(open[1])};
       const std::size_t first = result.pairs.size();
       assign_some(path_1,
                   path_2,
                   a,
                   b,
-                  open[0],
-                  open[1],
+                  chosen,
+                  are_whorls ? &whorls : nullptr,
                   turned,
                   std::numeric_limits<double>::infinity(),
                   result);
       for (std::size_t k = first; k < result.pairs.size(); ++k) {
-        erase_value(open[0], result.pairs[k].child_1);
-        erase_value(open[1], result.pairs[k].child_2);
+        erase_whorl(open[0], result.pairs[k].child_1);
+        erase_whorl(open[1], result.pairs[k].child_2);
       }
     }
     std::sort(result.pairs.begin(), result.pairs.end(), [](const auto& x, const auto& y) {
       return x.child_1 < y.child_1;
     });
-    return result.cost < limit;
   }
 
   static std::vector<std::size_t> by_index(const Children& children)
@@ -510,23 +543,34 @@ private:
     return order;
   }
 
-  static void erase_value(std::vector<std::size_t>& values, std::size_t value)
+  /// Sorts groups of children by decreasing weight.
+  static void sort_by_weight(const Children& children, Whorls& groups)
   {
-    values.erase(std::find(values.begin(), values.end(), value));
+    const auto weight = [&](const std::vector<std::size_t>& group) {
+      double sum = 0;
+      for (const std::size_t i : group)
+        sum += children.weight[i];
+      return sum;
+    };
+    std::stable_sort(groups.begin(), groups.end(), [&](const auto& x, const auto& y) {
+      return weight(x) > weight(y);
+    });
   }
 
   /// Assigns some children of both branches, first by lower bounds of their costs. Then the costs
   /// of assigned pairs are replaced by exact ones, until the costs of all assigned pairs are exact.
+  /// `whorls`: by position in `chosen`, or null.
   bool assign_some(const Branch_path& path_1,
                    const Branch_path& path_2,
                    const Children& a,
                    const Children& b,
-                   const std::vector<std::size_t>& rows,
-                   const std::vector<std::size_t>& columns,
+                   const std::array<std::vector<std::size_t>, 2>& chosen,
+                   const std::array<Whorls, 2>* whorls,
                    const Eigen::Matrix3d& turned,
                    double limit,
                    Matched_branch& result)
   {
+    const std::vector<std::size_t>&rows = chosen[0], &columns = chosen[1];
     const std::size_t n = rows.size(), m = columns.size();
     std::vector<double> gain(n * m);
     std::vector<Answer> exact(n * m, Answer(unknown));
@@ -565,13 +609,8 @@ private:
                               assignment,
                               result);
     };
-    // batches may divide whorls
-    const bool may_keep_whorls = m_energy.weights().do_keep_whorls && n == a.s.size() &&
-                                 m == b.s.size() && !m_energy.weights().is_published;
-    const Whorls whorls_1 = may_keep_whorls ? find_whorls(a.s) : Whorls();
-    const Whorls whorls_2 = whorls_1.empty() ? Whorls() : find_whorls(b.s);
-    if (!whorls_2.empty()) {
-      Whorl_assignment assignment(whorls_1, whorls_2, gain);
+    if (whorls != nullptr) {
+      Whorl_assignment assignment((*whorls)[0], (*whorls)[1], gain);
       return make_exact(assignment);
     }
     Assignment assignment(n, m, gain);

@@ -98,6 +98,51 @@ inline Whorls find_whorls(const std::vector<double>& s)
   return best;
 }
 
+/// Returns `n` whorls of one branch.
+inline Whorls single_whorls(std::size_t n)
+{
+  Whorls whorls;
+  for (std::size_t i = 0; i < n; ++i)
+    whorls.push_back({i});
+  return whorls;
+}
+
+/// Returns the members of all whorls, in this order.
+inline std::vector<std::size_t> members_of(const Whorls& whorls)
+{
+  std::vector<std::size_t> members;
+  for (const std::vector<std::size_t>& whorl : whorls)
+    members.insert(members.end(), whorl.begin(), whorl.end());
+  return members;
+}
+
+inline std::size_t number_of_members(const Whorls& whorls)
+{
+  std::size_t n = 0;
+  for (const std::vector<std::size_t>& whorl : whorls)
+    n += whorl.size();
+  return n;
+}
+
+/// Returns whorls with the positions in `members_of(whorls)` instead of the members.
+inline Whorls renumbered(Whorls whorls)
+{
+  std::size_t next = 0;
+  for (std::vector<std::size_t>& whorl : whorls)
+    for (std::size_t& member : whorl)
+      member = next++;
+  return whorls;
+}
+
+/// Erases the whorl of a member, if there is one.
+inline void erase_whorl(Whorls& whorls, std::size_t member)
+{
+  const auto has_member = [&](const std::vector<std::size_t>& whorl) {
+    return std::find(whorl.begin(), whorl.end(), member) != whorl.end();
+  };
+  whorls.erase(std::remove_if(whorls.begin(), whorls.end(), has_member), whorls.end());
+}
+
 /*!
   Minimises the sum of `gain[i * m + j]` over pairs, where all partners of the members of a whorl
   are members of one whorl. Non-negative entries are never used.
