@@ -3,6 +3,7 @@
 // Tests of the weights of surface edges.
 
 #include <pcs/deformation/model/Elastic_network.h>
+#include <pcs/deformation/model/Harmonic_system.h>
 #include <support/networks.h>
 
 #include <boost/test/unit_test.hpp>
@@ -66,6 +67,32 @@ BOOST_AUTO_TEST_CASE(one_point_that_nearly_coincides_with_another_has_the_spacin
   const auto network = pcs_test::network_of(points);
   for (std::size_t i = 0; i < network.size(); ++i)
     BOOST_TEST(pcs::deformation::local_spacing(network.rest, network.surface, i) > 0.9);
+}
+
+BOOST_AUTO_TEST_CASE(two_points_that_nearly_coincide_resist_rotations_like_one)
+{
+  auto points = pcs_test::plate(10, 10, 1);
+  const std::size_t one = 55, other = points.size();
+  const auto weight_of_fit = [&](const pcs::deformation::Elastic_network& network, std::size_t i) {
+    return network.area[i] * pcs::deformation::node_degree(network.surface, i);
+  };
+  auto network = pcs_test::network_of(points);
+  pcs::deformation::set_areas<CGAL::Sequential_tag>(std::vector<std::uint32_t>(other, 0), network);
+  const double alone = weight_of_fit(network, one);
+  points.push_back(points[one] + pcs_test::Vec3(1e-4, 0, 0));
+  auto with_pair = pcs_test::network_of(points);
+  // as heavy as the edge of two Voronoi cells
+  auto& surface = with_pair.surface;
+  for (const std::size_t i : {one, other})
+    for (std::size_t e = surface.first[i]; e < surface.first[i + 1]; ++e)
+      if (surface.neighbor[e] == one || surface.neighbor[e] == other)
+        surface.weight[e] = 1e4;
+  pcs::deformation::set_areas<CGAL::Sequential_tag>(std::vector<std::uint32_t>(other + 1, 0),
+                                                    with_pair);
+  for (const std::size_t i : {one, other}) {
+    BOOST_TEST(weight_of_fit(with_pair, i) > 0.1 * alone);
+    BOOST_TEST(weight_of_fit(with_pair, i) < 2 * alone);
+  }
 }
 
 BOOST_AUTO_TEST_CASE(a_graph_without_edges_has_no_weights)

@@ -68,15 +68,27 @@ inline double local_spacing(const std::vector<Vec3>& rest,
   return neighborhood::group_spacing(rest, graph, i);
 }
 
-/// Sets `area` from the spacings; \p component holds the component of each node.
+/*!
+  Sets `area` to the fractions `a_i / sum_k a_k` over the nodes of a component, with the weighted
+  mean square `a_i = sum_j w_ij |x_j - x_i|^2 / sum_j w_ij` of the edges of a node [L^2]. Multiplied
+  by the degree `sum_j w_ij`, the area is proportional to the resistance of the edges of the node
+  against a rotation. If two nodes nearly coincide, they have a large degree, but a small area. \p
+  component holds the component of each node.
+*/
 template <class ConcurrencyTag>
 void set_areas(const std::vector<std::uint32_t>& component, Elastic_network& network)
 {
   const std::size_t n = network.size();
   network.area.resize(n);
   pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t i) {
-    const double spacing = local_spacing(network.rest, network.surface, i);
-    network.area[i] = spacing * spacing;
+    const Weighted_graph& graph = network.surface;
+    double squares = 0, degree = 0;
+    for (std::size_t e = graph.first[i]; e < graph.first[i + 1]; ++e) {
+      squares +=
+          graph.weight[e] * (network.rest[graph.neighbor[e]] - network.rest[i]).squaredNorm();
+      degree += graph.weight[e];
+    }
+    network.area[i] = degree > 0 ? squares / degree : 0;
   });
   std::vector<double> sum;
   for (std::size_t i = 0; i < n; ++i) {
