@@ -287,8 +287,8 @@ replace_trunk_tip(std::size_t end, const std::vector<Branch_node>& tip, Branch_t
   continuation becomes a branch.
 
   New nodes count as inferred. `is_tree(i)` holds for the points of wood and leaves, `top_of_tree`
-  is the height of its top [L], above which points are strays. z points upwards. O(points + nodes * new
-  nodes).
+  is the height of its top [L], above which points are strays. z points upwards. O(points + nodes *
+  new nodes).
 */
 template <class IsTree>
 double continue_hidden_trunk(const Scan& scan,
