@@ -139,6 +139,20 @@ BOOST_AUTO_TEST_CASE(matrices_that_are_not_positive_definite_are_refused)
   BOOST_TEST(!factor.factorize(lower(bad)));
 }
 
+BOOST_AUTO_TEST_CASE(a_missing_entry_of_the_diagonal_is_zero)
+{
+  using Entry = Eigen::Triplet<double>;
+  const auto is_factorized = [](const std::vector<Entry>& entries) {
+    Cholesky::Matrix a(3, 3);
+    a.setFromTriplets(entries.begin(), entries.end());
+    Cholesky factor;
+    return factor.factorize(a);
+  };
+  BOOST_TEST(is_factorized({{0, 0, 2}, {1, 1, 2}, {2, 2, 2}, {1, 0, -0.5}}));
+  BOOST_TEST(!is_factorized({{0, 0, 2}, {2, 2, 2}, {1, 0, -0.5}}));
+  BOOST_TEST(!is_factorized({{0, 0, 2}, {1, 1, 2}, {1, 0, -0.5}}));
+}
+
 BOOST_AUTO_TEST_CASE(a_singular_laplacian_is_refused_in_spite_of_rounding)
 {
   // A path without a prescribed node: exactly singular, but its last pivot is a rounding error.
