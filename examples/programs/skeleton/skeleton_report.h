@@ -132,6 +132,7 @@ inline nlohmann::ordered_json to_json(const std::string& input, const pcs::Skele
   json["root_elevation"] = r.root_elevation;
   json["max_root_distance"] = r.max_root_distance;
   json["hidden_trunk_length"] = r.hidden_trunk_length;
+  json["hidden_trunk_volume"] = r.hidden_trunk_volume;
   json["breast_height"] = r.breast_height;
   json["diameter_at_breast_height"] = nullptr;
   if (r.diameter_at_breast_height > 0) // 0 if the tree is lower

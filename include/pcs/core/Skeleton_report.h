@@ -144,6 +144,7 @@ struct Skeleton_report
   //! inferred length of the trunk at the top of the tree, where leaves hide it; 0: the whole trunk
   //! was found [L]
   double hidden_trunk_length = 0;
+  double hidden_trunk_volume = 0; ///< of this part [L^3]
   //! diameter of the thickest stem at breast height, from a line fitted to its radii between 1.1
   //! and 1.5 m to reduce the effect of bark and noise; 0: the tree is lower [L]
   double diameter_at_breast_height = 0;
@@ -381,7 +382,8 @@ struct Skeleton_errors
   \f$ e^2 = (k s)^2 + (b v)^2 \f$. The first term is the effect of chance, where k is the factor of
   the delete-d jackknife for the fraction of points in a copy. The second term holds errors that all
   copies share, such as occluded wood; b was calibrated on 139 virtual scans of all habits with 1 to
-  6 stations and with or without leaves, see `benchmark/results/skeletons.md`.
+  6 stations and with or without leaves, see `benchmark/results/skeletons.md`. To the errors of
+  volumes, half of the volume of a hidden trunk is added in the same way.
 
   \return errors of 0, and no size classes, if the report has fewer than two copies
 */
@@ -401,8 +403,9 @@ inline Skeleton_errors standard_errors(const Skeleton_report& r)
       error(s.diameter_at_breast_height, r.diameter_at_breast_height, 0.016);
   result.trunk_length = error(s.trunk_length, r.by_order.front().length, 0.021);
   result.length = error(s.length, r.total.length, 0.21);
-  result.volume = error(s.volume, r.total.volume, 0.076);
-  result.trunk_volume = error(s.trunk_volume, r.by_order.front().volume, 0.022);
+  const double hidden = 0.5 * r.hidden_trunk_volume;
+  result.volume = std::hypot(error(s.volume, r.total.volume, 0.076), hidden);
+  result.trunk_volume = std::hypot(error(s.trunk_volume, r.by_order.front().volume, 0.022), hidden);
   for (std::size_t k = 0; k < std::min(s.volume_by_size.size(), r.by_size.size()); ++k)
     result.volume_by_size.push_back(error(s.volume_by_size[k],
                                           r.by_size[k].volume,

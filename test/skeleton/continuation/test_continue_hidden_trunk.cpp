@@ -55,7 +55,7 @@ struct Crown
     add(b, seat, tree.nodes[seat].point, to, r, r);
     return b;
   }
-  double run(double top = 11)
+  Hidden_trunk_part run(double top = 11)
   {
     tree.node_of_point.assign(scan.points.size(), none);
     tree.node_of_point.back() = static_cast<Index>(tree.nodes.size() - 1);
@@ -122,7 +122,8 @@ BOOST_AUTO_TEST_CASE(a_trunk_that_turns_into_a_branch_is_continued_to_the_top)
   Crown crown;
   turn_trunk(0.03, crown);
   const Branch_tree before = crown.tree;
-  const double hidden = crown.run();
+  const Hidden_trunk_part part = crown.run();
+  const double hidden = part.length;
   const Branch_tree& tree = crown.tree;
   check_tree(tree);
   BOOST_TEST(std::abs(hidden - 4) < 0.3);
@@ -153,10 +154,13 @@ BOOST_AUTO_TEST_CASE(a_trunk_that_ends_at_a_thick_section_is_continued)
   Crown crown;
   crown.add(0, none, Vec3(0, 0, 0), Vec3(0, 0, 6), 0.15, 0.1);
   crown.scan.points = {Vec3(0.3, 0, 10)};
-  const double hidden = crown.run();
+  const Hidden_trunk_part part = crown.run();
+  const double hidden = part.length;
   check_tree(crown.tree);
   BOOST_TEST(crown.tree.branches.size() == 1u);
   BOOST_TEST(hidden > 3.9);
+  // a cone of the radius at the end
+  BOOST_TEST(std::abs(part.volume / (3.14159265 / 3 * 0.1 * 0.1 * hidden) - 1) < 0.2);
   BOOST_TEST(std::abs(length_of(crown.tree, 0) - 10) < 0.05);
 }
 
@@ -165,7 +169,7 @@ BOOST_AUTO_TEST_CASE(a_visible_trunk_is_kept)
   Crown crown;
   crown.add(0, none, Vec3(0, 0, 0), Vec3(0, 0, 10), 0.15, 0.005);
   crown.scan.points = {Vec3(0.3, 0, 10.2)};
-  BOOST_TEST(crown.run() == 0);
+  BOOST_TEST(crown.run().length == 0);
   BOOST_TEST(crown.tree.nodes.size() == 101u);
 }
 
@@ -177,7 +181,7 @@ BOOST_AUTO_TEST_CASE(a_fork_carries_the_area_of_the_trunk)
   crown.add(0, none, Vec3(0, 0, 3), Vec3(2, 0, 6), 0.1, 0.03);
   crown.add_branch(0, 30, Vec3(-2, 0, 6), 0.1);
   crown.scan.points = {Vec3(0, 0, 10)};
-  BOOST_TEST(crown.run() == 0);
+  BOOST_TEST(crown.run().length == 0);
 }
 
 BOOST_AUTO_TEST_CASE(without_points_above_nothing_is_inferred)
@@ -186,7 +190,7 @@ BOOST_AUTO_TEST_CASE(without_points_above_nothing_is_inferred)
   turn_trunk(0.03, crown);
   crown.scan.points = {Vec3(3, 0, 6.5)};
   const std::size_t before = crown.tree.nodes.size();
-  BOOST_TEST(crown.run() == 0);
+  BOOST_TEST(crown.run().length == 0);
   BOOST_TEST(crown.tree.nodes.size() == before);
 }
 
@@ -195,7 +199,7 @@ BOOST_AUTO_TEST_CASE(a_tree_below_breast_height_is_kept)
   Crown crown;
   crown.add(0, none, Vec3(0, 0, 0), Vec3(0, 0, 1), 0.05, 0.04);
   crown.scan.points = {Vec3(0, 0, 3)};
-  BOOST_TEST(crown.run() == 0);
+  BOOST_TEST(crown.run().length == 0);
   Branch_tree empty;
   BOOST_TEST(continue_hidden_trunk(
                  crown.scan,
@@ -203,7 +207,8 @@ BOOST_AUTO_TEST_CASE(a_tree_below_breast_height_is_kept)
                  11,
                  breast_height,
                  Hidden_trunk_options(),
-                 empty) == 0);
+                 empty)
+                 .length == 0);
 }
 
 BOOST_AUTO_TEST_CASE(the_report_names_the_inferred_length)
@@ -217,6 +222,10 @@ BOOST_AUTO_TEST_CASE(the_report_names_the_inferred_length)
   for (const std::string& sentence : pcs::warnings(report))
     is_named |= sentence.find("the upper 4 of the trunk") != std::string::npos;
   BOOST_TEST(is_named);
+  report.spread.number_of_copies = 4;
+  const double without = pcs::standard_errors(report).volume;
+  report.hidden_trunk_volume = 0.04;
+  BOOST_TEST(std::abs(pcs::standard_errors(report).volume - std::hypot(without, 0.02)) < 1e-12);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -5,6 +5,7 @@
 #ifndef PCS_SKELETON_CONTINUATION_CONTINUE_HIDDEN_TRUNK_H
 #define PCS_SKELETON_CONTINUATION_CONTINUE_HIDDEN_TRUNK_H
 
+#include <pcs/internal/constants.h>
 #include <pcs/internal/median.h>
 #include <pcs/skeleton/model/Branch_tree.h>
 #include <pcs/skeleton/model/Scan.h>
@@ -32,6 +33,14 @@ struct Hidden_trunk_options
   double steepest = 0.8;   ///< least cosine of the last visible part and its direction [-]
   double continuing = 0.6; ///< least radius of the last visible part
   double step = 4;         ///< distance of the new nodes
+  double tip = 0.05;       ///< radius of the tip
+};
+
+/// Sizes of the inferred part of a trunk; 0: none.
+struct Hidden_trunk_part
+{
+  double length = 0; ///< [L]
+  double volume = 0; ///< [L^3]
 };
 
 namespace internal {
@@ -268,7 +277,7 @@ replace_trunk_tip(std::size_t end, const std::vector<Branch_node>& tip, Branch_t
 /*!
   Continues a trunk that disappears in its crown straight to the top of the tree, as a cone. Leaves
   and branches hide the upper stem, and the trunk that was found then turns into a side branch or
-  into leaves. Returns the length of the inferred part; 0: none [L].
+  into leaves. Returns the sizes of the inferred part.
 
   The wood beyond a section carries its cross-section area in trees (pipe model). With the radius
   `R_k` [L] of node `k` of the trunk at the arc length `s_k` [L], the missing fraction is
@@ -281,7 +290,7 @@ replace_trunk_tip(std::size_t end, const std::vector<Branch_node>& tip, Branch_t
   to the highest point within a cone around the direction of the trunk. At the fraction `t` [-] of
   its length `l` [L], its radius `r` [L] is that of the wood that the branches do not explain,
 
-      r^2 = max(R_k^2 (1 - t)^2 - sum_e r_e^2, (thinnest R_k (1 - t))^2),
+      r^2 = max(C^2 - sum_e r_e^2, (thinnest C)^2)   for the cone C = R_k (1 - (1 - tip) t),
 
   where the edges `e` of other branches rise through the plane at the distance `t l`. The former
   continuation becomes a branch.
@@ -291,19 +300,19 @@ replace_trunk_tip(std::size_t end, const std::vector<Branch_node>& tip, Branch_t
   new nodes).
 */
 template <class IsTree>
-double continue_hidden_trunk(const Scan& scan,
-                             const IsTree& is_tree,
-                             double top_of_tree,
-                             double breast_height,
-                             const Hidden_trunk_options& rules,
-                             Branch_tree& tree)
+Hidden_trunk_part continue_hidden_trunk(const Scan& scan,
+                                        const IsTree& is_tree,
+                                        double top_of_tree,
+                                        double breast_height,
+                                        const Hidden_trunk_options& rules,
+                                        Branch_tree& tree)
 {
   if (tree.branches.empty())
-    return 0;
+    return {};
   const internal::Hidden_trunk trunk(tree, breast_height, rules);
   const auto found = trunk.find_end();
   if (!found)
-    return 0;
+    return {};
   const Branch_node& last = tree.nodes[tree.branches.front().nodes[found->end]];
   const Index top = internal::highest_in_cone(scan,
                                               is_tree,
@@ -312,24 +321,33 @@ double continue_hidden_trunk(const Scan& scan,
                                               trunk.direction_to(found->end),
                                               rules.spread);
   if (top == none)
-    return 0;
+    return {};
   const Vec3 rest = scan.points[top] - last.point;
   const double length = rest.norm();
   if (length < rules.shortest * found->radius)
-    return 0;
+    return {};
   const auto steps = static_cast<std::size_t>(std::ceil(length / (rules.step * found->radius)));
   std::vector<Branch_node> tip(steps);
   for (std::size_t k = 1; k <= steps; ++k) {
     const double share = double(k) / double(steps);
-    const double cone = found->radius * (1 - double(k) / double(steps + 1)); // not 0 at the end
+    const double cone = found->radius * (1 - (1 - rules.tip) * share);
     const double area = internal::area_at(tree, last.point, rest / length, share * length);
     Branch_node& node = tip[k - 1];
     node.point = last.point + share * rest;
     node.radius = std::sqrt(std::max(cone * cone - area, std::pow(rules.thinnest * cone, 2)));
     node.radius_error = node.radius;
   }
+  Hidden_trunk_part part;
+  part.length = length;
+  double below = found->radius;
+  for (const Branch_node& node : tip) { // frusta
+    const double r = node.radius;
+    part.volume +=
+        pcs::internal::pi / 3 * length / double(steps) * (below * below + below * r + r * r);
+    below = r;
+  }
   internal::replace_trunk_tip(found->end, tip, tree);
-  return length;
+  return part;
 }
 
 } // namespace skeleton

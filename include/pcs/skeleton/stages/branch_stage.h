@@ -28,20 +28,23 @@ bool is_tree_point(const Session_state<Tag>& s, Index i)
   return s.is_used()[i] != 0 || s.labels.is_leaf(i);
 }
 
-/// Continues a trunk that is hidden. Returns the length of the inferred part [L].
+/// Continues a trunk that is hidden, and reports the sizes of the inferred part.
 template <class Tag>
-double continue_trunk(Session_state<Tag>& s)
+void continue_trunk(Session_state<Tag>& s)
 {
   double top = s.labels.top_of_leaves(s.options.up);
   for (const Branch_node& node : s.joined.tree.nodes)
     top = std::max(top, s.options.up.dot(node.point));
-  return continue_hidden_trunk(
+  const Hidden_trunk_part part = continue_hidden_trunk(
       s.scan,
       [&s](Index i) { return is_tree_point(s, i); },
       top,
       s.options.breast_height,
       s.options.hidden_trunk,
       s.joined.tree);
+  const double unit = s.scan.frame.unit;
+  s.report.hidden_trunk_length = unit * part.length;
+  s.report.hidden_trunk_volume = unit * unit * unit * part.volume;
 }
 
 template <class Tag>
@@ -62,7 +65,7 @@ bool build_tree(Session_state<Tag>& s, pcs::internal::Progress& progress)
     s.report.number_of_other_stems =
         count_other_stems(s.axes, s.joined.joints, s.joined.root, s.joined.tree, o.stems);
     if (o.do_continue_trunk && s.leaves.has_leaves && s.leaves.rounds > 0) // leaves hide wood
-      s.report.hidden_trunk_length = s.scan.frame.unit * continue_trunk(s);
+      continue_trunk(s);
   }
   return true;
 }
