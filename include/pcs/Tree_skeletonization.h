@@ -166,7 +166,8 @@ public:
         \npdefault `Leaf_removal::where_found`; `Leaf_removal::never` if `wood_map` is given
       \np{do_continue_trunk} whether a trunk that leaves hide is continued straight to the top of
           the tree, with inferred radii: `is_measured` of its nodes is `false`, and
-          `Skeleton_report::hidden_trunk_length` is its length. Used by the method `chains` only
+          `Skeleton_report::hidden_trunk_length` is its length. Used by the method `chains` only,
+          if leaves were removed, but not with `wood_map` or `given_skeleton`
         \nptype `bool`
         \npdefault `true`
       \np{point_branch_map} written by `extract()`: index of the branch of a point in the result, or

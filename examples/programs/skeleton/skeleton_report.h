@@ -21,6 +21,7 @@ inline std::string in_options(std::string sentence)
   for (const auto& [parameter, option] :
        {std::make_pair("do_remove_leaves(true)", "--remove-leaves"),
         std::make_pair("do_remove_leaves(false)", "--keep-leaves"),
+        std::make_pair("do_continue_trunk(false)", "--keep-trunk"),
         std::make_pair("root_position", "--root"),
         std::make_pair("skeleton_method(level_sets)", "--method level_sets"),
         std::make_pair("skeleton_method(chains)", "--method chains"),

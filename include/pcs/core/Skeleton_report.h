@@ -141,8 +141,8 @@ struct Skeleton_report
   double root_elevation = 0;
   bool is_root_given = false;   ///< whether `root_position` was given
   double max_root_distance = 0; ///< from the root to the farthest node [L]
-  //! inferred length of the trunk at the top of the tree, where leaves hide it; 0: the whole trunk
-  //! was found [L]
+  //! inferred length of the trunk at the top of the tree, where leaves hide it; 0: none was
+  //! inferred [L]
   double hidden_trunk_length = 0;
   double hidden_trunk_volume = 0; ///< of this part [L^3]
   //! diameter of the thickest stem at breast height, from a line fitted to its radii between 1.1
@@ -278,9 +278,9 @@ inline void warn_of_stems(const Skeleton_report& r, std::vector<std::string>& se
 {
   constexpr double max_elevation = 0.1; // root elevation / height above the lowest points [-]
   if (r.hidden_trunk_length > 0)
-    sentences.push_back(
-        "leaves hide the upper " + short_text(r.hidden_trunk_length) +
-        " of the trunk, which is inferred: it is continued straight to the top of the tree");
+    sentences.push_back("leaves hide the upper " + short_text(r.hidden_trunk_length) +
+                        " of the trunk, which is inferred: it is continued straight to the "
+                        "top of the tree (do_continue_trunk(false) keeps it as it was found)");
   if (r.root_elevation > max_elevation * (r.root_elevation + r.height))
     sentences.push_back("the root is " + short_text(r.root_elevation) +
                         (r.is_root_given

@@ -106,6 +106,7 @@ void check_tree(const Branch_tree& tree)
         BOOST_TEST(tree.nodes[node.parent].branch == branch.parent);
     }
   }
+  BOOST_TEST(uses[0] == 1);
   for (Index v = 1; v < tree.nodes.size(); ++v) {
     BOOST_TEST(uses[v] == 1);
     BOOST_TEST(tree.nodes[v].parent < v);
@@ -209,6 +210,44 @@ BOOST_AUTO_TEST_CASE(a_tree_below_breast_height_is_kept)
                  Hidden_trunk_options(),
                  empty)
                  .length == 0);
+}
+
+BOOST_AUTO_TEST_CASE(a_leaning_trunk_keeps_its_direction)
+{
+  const Vec3 along = Vec3(0.3, 0, 1).normalized();
+  Crown crown;
+  crown.add(0, none, Vec3::Zero(), 6 * along, 0.15, 0.1);
+  crown.add(0, none, 6 * along, 6 * along + Vec3(-2, 0, 0), 0.01, 0.005);
+  // the second point is higher, but not in the cone
+  crown.scan.points = {10 * along, Vec3(-3, 0, 10.5)};
+  BOOST_TEST(std::abs(crown.run().length - 4) < 0.3);
+  BOOST_TEST((crown.tree.nodes[crown.tree.branches[0].nodes.back()].point - 10 * along).norm() <
+             1e-12);
+}
+
+BOOST_AUTO_TEST_CASE(a_trunk_may_end_at_breast_height)
+{
+  // false wood leads away from the stem, first below breast height, then above
+  for (const double height : {1.2, 1.5}) {
+    Crown crown;
+    crown.add(0, none, Vec3::Zero(), Vec3(0, 0, height), 0.15, 0.15);
+    crown.add(0, none, Vec3(0, 0, height), Vec3(-1, 0, height + 0.5), 0.02, 0.02);
+    crown.scan.points = {Vec3(0, 0, 8), Vec3(-2.5, 0, 5)};
+    const Hidden_trunk_part part = crown.run();
+    check_tree(crown.tree);
+    BOOST_TEST(
+        (crown.tree.nodes[crown.tree.branches[0].nodes.back()].point - Vec3(0, 0, 8)).norm() <
+        1e-12);
+    BOOST_TEST(part.volume > 0.1); // a cone of 0.15 m is 0.16 m3
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_short_part_is_not_inferred)
+{
+  Crown crown;
+  crown.add(0, none, Vec3(0, 0, 0), Vec3(0, 0, 6), 0.15, 0.1);
+  crown.scan.points = {Vec3(0, 0, 7)}; // ten radii above the end
+  BOOST_TEST(crown.run().length == 0);
 }
 
 BOOST_AUTO_TEST_CASE(the_report_names_the_inferred_length)

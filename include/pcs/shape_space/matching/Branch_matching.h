@@ -113,8 +113,9 @@ public:
   double known_cost(std::size_t start_1, std::size_t start_2, const Eigen::Matrix3d& rotation) const
   {
     const Matching_key question(start_1, start_2, rotation * m_rotation.transpose());
-    if (const double* const cost = m_simple.find(question))
-      return *cost;
+    if (is_simple(start_1, start_2))
+      if (const double* const cost = m_simple.find(question))
+        return *cost;
     for (const std::size_t k : {3u, 2u, 1u, 0u})
       if (const Result* const answer = m_known[k].find(question))
         return *answer ? (*answer)->cost : std::numeric_limits<double>::infinity();
@@ -151,7 +152,8 @@ public:
     Result best = search(progress, 0, most_cost);
     if (best && has_limbs() && unexplained_share(best->cost) < largest_share) {
       use_more_limbs(true);
-      if (Result other = search(progress, 0.5, below(best->cost)))
+      Result other = search(progress, 0.5, below(best->cost));
+      if (other && other->cost < below(best->cost)) // few trials are admitted above the limit
         best = std::move(other);
       if (progress.is_cancelled())
         return nullptr;

@@ -24,7 +24,7 @@ constexpr double tip_share = 0.05;
 /// branches depends on it. [-]
 constexpr std::size_t trunk_factor = 6;
 
-/// A limb has at least this fraction of the length of its tree. [-]
+/// A limb has more than this fraction of the length of its tree. [-]
 constexpr double limb_share = 0.01;
 
 /// Factors of the fork ratio and of the number of candidates of limbs in a second search: all

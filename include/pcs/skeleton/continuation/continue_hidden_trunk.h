@@ -27,7 +27,7 @@ struct Hidden_trunk_options
   double before = 3;       ///< length below a section over which its radius is the median
   double direction = 20;   ///< length below a section that gives its direction
   double missing = 0.5;    ///< least fraction of the cross-section area without continuation [-]
-  double thinnest = 0.2;   ///< least radius, in radii at breast height, or of the cone
+  double thinnest = 0.2;   ///< least radius, in median radii up to breast height, or of the cone
   double spread = 0.5;     ///< tangent of the half angle of the cone that contains the top [-]
   double shortest = 12;    ///< least length of the hidden part
   double steepest = 0.8;   ///< least cosine of the last visible part and its direction [-]
@@ -63,6 +63,10 @@ public:
     for (std::size_t k = 0; k < m_trunk.size(); ++k)
       m_place.push_back(k == 0 ? 0 : m_place.back() + (point(k) - point(k - 1)).norm());
     m_first = index_at(breast_height);
+    std::vector<double> radii;
+    for (std::size_t k = 0; k < std::min(m_first + 1, m_trunk.size()); ++k)
+      radii.push_back(radius(k));
+    m_stem_radius = pcs::internal::lower_median(radii);
     add_children();
   }
 
@@ -71,8 +75,11 @@ public:
   {
     if (m_first >= m_trunk.size())
       return std::nullopt;
-    const double thinnest = m_rules.thinnest * radius(m_first);
-    for (std::size_t k = m_first + 1; k < m_trunk.size(); ++k) {
+    const double thinnest = m_rules.thinnest * m_stem_radius;
+    std::size_t first = 0; // below breast height if the trunk is a twig there
+    while (first < m_first && radius(first + 1) >= thinnest)
+      ++first;
+    for (std::size_t k = first; k < m_trunk.size(); ++k) {
       const double r = median_radius(k);
       if (r < thinnest)
         break;
@@ -83,10 +90,12 @@ public:
     return std::nullopt;
   }
 
-  /// Returns the direction from breast height to node `k` of the trunk.
+  /// Returns the direction to node `k` of the trunk from breast height, or from the root if that is
+  /// near.
   Vec3 direction_to(std::size_t k) const
   {
-    const std::size_t from = k > m_first ? m_first : 0;
+    const double length = m_rules.direction * median_radius(k);
+    const std::size_t from = m_place[k] - m_place[m_first] >= length ? m_first : 0;
     return (point(k) - point(from)).normalized();
   }
 
@@ -167,6 +176,7 @@ private:
   std::vector<double> m_place; // arc length of each node of the trunk
   std::vector<double> m_area;  // of the branches at each node, as squared radii
   std::size_t m_first = 0;     // node at breast height
+  double m_stem_radius = 0;    // median up to breast height
 };
 
 /// Returns the highest point up to the height `top` [L] for which `is_tree(i)` holds in a cone
@@ -279,25 +289,29 @@ replace_trunk_tip(std::size_t end, const std::vector<Branch_node>& tip, Branch_t
   and branches hide the upper stem, and the trunk that was found then turns into a side branch or
   into leaves. Returns the sizes of the inferred part.
 
-  The wood beyond a section carries its cross-section area in trees (pipe model). With the radius
-  `R_k` [L] of node `k` of the trunk at the arc length `s_k` [L], the missing fraction is
+  The wood beyond a section carries its cross-section area in trees (pipe model). With the median
+  radius `R_k` [L] of the trunk over `before` radii below its node `k`, at the arc length `s_k` [L],
+  the missing fraction is
 
       m_k = 1 - (max_j (r_j cos_kj)^2 + sum_c r_c^2) / R_k^2                                  [-]
 
   over the nodes `j` with `w <= s_j - s_k <= 3 w` for `w = window R_k`, the cosines `cos_kj` of the
-  directions to them and of the trunk below, and the branches `c` on the trunk up to `s_k + w`. The
-  trunk ends where `m_k` is at least `missing` for the first time above breast height. It continues
-  to the highest point within a cone around the direction of the trunk. At the fraction `t` [-] of
-  its length `l` [L], its radius `r` [L] is that of the wood that the branches do not explain,
+  directions to them and of the trunk below, and the branches `c` on the trunk from `before` radii
+  below `k` up to `s_k + w`. Node `k` is the lowest one from breast height on for which `m_k` is at
+  least `missing`, or the last thick one below. The trunk ends at the last node up to `s_k + w` with
+  at least `continuing` times the radius, in the direction of the trunk. It continues to the highest
+  point within a cone around this direction, if there is one farther than `shortest` radii. At the
+  fraction `t` [-] of its length, the radius `r` [L] is that of the wood that the branches do not
+  explain,
 
       r^2 = max(C^2 - sum_e r_e^2, (thinnest C)^2)   for the cone C = R_k (1 - (1 - tip) t),
 
-  where the edges `e` of other branches rise through the plane at the distance `t l`. The former
+  where the edges `e` of other branches rise through the plane at this distance. The former
   continuation becomes a branch.
 
   New nodes count as inferred. `is_tree(i)` holds for the points of wood and leaves, `top_of_tree`
   is the height of its top [L], above which points are strays. z points upwards. O(points + nodes *
-  new nodes).
+  new nodes); at most 1000 nodes are new.
 */
 template <class IsTree>
 Hidden_trunk_part continue_hidden_trunk(const Scan& scan,
@@ -326,7 +340,8 @@ Hidden_trunk_part continue_hidden_trunk(const Scan& scan,
   const double length = rest.norm();
   if (length < rules.shortest * found->radius)
     return {};
-  const auto steps = static_cast<std::size_t>(std::ceil(length / (rules.step * found->radius)));
+  const double count = std::ceil(length / (rules.step * found->radius));
+  const auto steps = static_cast<std::size_t>(std::min(count, 1000.0));
   std::vector<Branch_node> tip(steps);
   for (std::size_t k = 1; k <= steps; ++k) {
     const double share = double(k) / double(steps);

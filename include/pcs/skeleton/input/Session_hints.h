@@ -25,9 +25,9 @@ struct Session_hints
   bool do_register_stations = false;   ///< the stations of `stations`, or detected ones
   std::vector<long long> stations;     ///< of the points; empty: unknown
   bool do_mark_ground = true;
-  bool do_continue_trunk = true; ///< for the method `chains`, like the next
-  Leaf_removal leaf_removal = Leaf_removal::where_found;
-  double breast_height = 1.3; ///< [L]
+  bool do_continue_trunk = true;                         ///< for the method `chains`
+  Leaf_removal leaf_removal = Leaf_removal::where_found; ///< for the method `chains`
+  double breast_height = 1.3;                            ///< [L]
   Skeleton_method method = Skeleton_method::chains;
   Slice_options slices;      ///< for the method `sections`, like the next
   std::vector<Vec3> normals; ///< of the points, in input coordinates; null or empty: unknown
