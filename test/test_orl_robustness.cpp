@@ -257,7 +257,7 @@ BOOST_AUTO_TEST_CASE(turns_do_not_add_up_along_branches)
 BOOST_AUTO_TEST_CASE(nothing_grows_into_the_ground)
 {
   int number_below = 0;
-  for (unsigned seed = 70; seed < 82; ++seed) {
+  for (unsigned seed = 70; seed < 94; ++seed) {
     const Space space = seed == 70 ? make_space(curled(0), curled(0.15))
                                    : make_space(random_tree(seed), random_tree(seed + 100));
     const Orl_coordinates x = space.tree(0).coordinates(), y = space.tree(1).coordinates();

@@ -149,16 +149,16 @@ public:
       const double most_cost = std::numeric_limits<double>::infinity())
   {
     use_more_limbs(false);
-    Result best = search(progress, 0, most_cost);
-    if (best && has_limbs() && unexplained_share(best->cost) < largest_share) {
-      use_more_limbs(true);
-      Result other = search(progress, 0.5, below(best->cost));
-      if (other && other->cost < below(best->cost)) // few trials are admitted above the limit
-        best = std::move(other);
-      if (progress.is_cancelled())
-        return nullptr;
-    }
-    return best ? completed(*best) : nullptr;
+    const Result first = search(progress, 0, most_cost);
+    const Result best = first ? completed(*first) : nullptr;
+    if (!best || !has_limbs() || unexplained_share(best->cost) >= largest_share || is_same(*best))
+      return best;
+    use_more_limbs(true);
+    const Result other = search(progress, 0.5, below(best->cost));
+    if (progress.is_cancelled())
+      return nullptr;
+    // few trials are admitted above the limit
+    return other && other->cost < below(best->cost) ? completed(*other) : best;
   }
 
 private:
@@ -238,6 +238,21 @@ private:
   }
 
   bool has_limbs() const { return !paths(0).limbs.empty() || !paths(1).limbs.empty(); }
+
+  /// Returns whether all branches have partners of the same length: the trees differ in rotations
+  /// only, and other paths cannot explain more.
+  bool is_same(const Matched_branch& match) const
+  {
+    constexpr double tolerance = 1e-6;
+    const std::size_t count = match.pairs.size();
+    const double a = m_energy.length(0, match.path_1), b = m_energy.length(1, match.path_2);
+    return count == m_energy.path(0, match.path_1).children.size() &&
+           count == m_energy.path(1, match.path_2).children.size() &&
+           std::abs(a - b) <= tolerance * std::max(a, b) &&
+           std::all_of(match.pairs.begin(),
+                       match.pairs.end(),
+                       [this](const Matched_branch::Pair& pair) { return is_same(*pair.branch); });
+  }
 
   /// Selects whether limbs have the paths of the second search. Memoised matchings stay valid.
   void use_more_limbs(bool do_use)
