@@ -212,6 +212,15 @@ BOOST_AUTO_TEST_CASE(a_tree_below_breast_height_is_kept)
                  .length == 0);
 }
 
+BOOST_AUTO_TEST_CASE(thick_wood_aside_does_not_continue_a_trunk)
+{
+  // 0.8 of the area continues, but not in the direction of the trunk
+  Crown crown;
+  turn_trunk(0.09, crown);
+  BOOST_TEST(std::abs(crown.run().length - 4) < 0.3);
+  check_tree(crown.tree);
+}
+
 BOOST_AUTO_TEST_CASE(a_leaning_trunk_keeps_its_direction)
 {
   const Vec3 along = Vec3(0.3, 0, 1).normalized();

@@ -230,15 +230,13 @@ replace_trunk_tip(std::size_t end, const std::vector<Branch_node>& tip, Branch_t
   std::vector<Branch_node> nodes(tree.nodes.begin(), tree.nodes.begin() + seat + 1);
   for (const Branch_node& node : tip) {
     nodes.push_back(node);
-    nodes.back().parent = nodes.size() == std::size_t(seat) + 2 ? seat : Index(nodes.size() - 2);
-    nodes.back().branch = 0;
+    nodes.back().parent = static_cast<Index>(nodes.size() - 2); // first the seat
   }
   const auto base = static_cast<Index>(nodes.size());
   if (has_rest) {
     nodes.push_back(tree.nodes[trunk[end + 1]]);
     nodes.back().point = tree.nodes[seat].point;
     nodes.back().parent = seat;
-    nodes.back().branch = 0; // until the branches are renumbered
   }
   for (auto v = std::size_t(seat) + 1; v < tree.nodes.size(); ++v) {
     nodes.push_back(tree.nodes[v]);
@@ -258,8 +256,6 @@ replace_trunk_tip(std::size_t end, const std::vector<Branch_node>& tip, Branch_t
     branches[0].nodes.push_back(seat + 1 + k);
   if (has_rest) {
     Branch rest;
-    rest.parent = 0;
-    rest.order = 1;
     rest.nodes.push_back(base);
     const std::vector<Index>& old = tree.branches.front().nodes; // moved
     rest.nodes.insert(rest.nodes.end(),
@@ -275,7 +271,7 @@ replace_trunk_tip(std::size_t end, const std::vector<Branch_node>& tip, Branch_t
     Branch& branch = tree.branches[b];
     for (const Index v : branch.nodes)
       tree.nodes[v].branch = b;
-    if (b > 0) { // parents precede their children
+    if (b > 0) { // parents and their nodes precede their children
       branch.parent = tree.nodes[tree.nodes[branch.nodes.front()].parent].branch;
       branch.order = tree.branches[branch.parent].order + 1;
     }
