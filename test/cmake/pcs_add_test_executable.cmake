@@ -32,7 +32,8 @@ target_precompile_headers(pcs_test_pch PRIVATE
 #                         [FOLDER <folder>] [LABELS <label>...] [LIBRARIES <target>...])
 #
 # One executable, and one ctest `<folder>.<suite>` for each Boost.Test suite in it. The label is
-# `unit` if none is given. A suite that does not exist is a failure (exit code 200 of Boost.Test).
+# `unit` if none is given. A suite that does not exist is a failure (exit code 200 of Boost.Test), and
+# one that is not listed is an error.
 # The preset `test` compiles several sources as one, in half the time: of an executable with several
 # sources, each has a namespace of its own, which is named like the file.
 function(pcs_add_test_executable name)
@@ -48,6 +49,17 @@ function(pcs_add_test_executable name)
   if(arg_FOLDER)
     set(prefix "${arg_FOLDER}.")
   endif()
+
+  foreach(source IN LISTS arg_SOURCES)
+    file(STRINGS ${source} lines REGEX "^BOOST_(AUTO|FIXTURE)_TEST_SUITE\\(")
+    foreach(line IN LISTS lines)
+      string(REGEX REPLACE "^[A-Z_]+\\(([A-Za-z0-9_]+).*" "\\1" suite "${line}")
+      if(NOT suite IN_LIST arg_SUITES)
+        message(SEND_ERROR "pcs_add_test_executable(${name}): the suite ${suite} of ${source} is not "
+                           "in SUITES")
+      endif()
+    endforeach()
+  endforeach()
 
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE pcs_test_flags ${arg_LIBRARIES})

@@ -65,6 +65,7 @@ set(root_skeleton
   input/read_maps.h
   input/read_options.h
   resampling/resample_scan.h
+  result/skeleton_warnings.h
   result/write_points.h
   result/write_result.h
   surface/Surface_builder.h)

@@ -22,4 +22,5 @@ pcs_add_script_test(format.line_length check_line_length.cmake)
 
 pcs_add_script_test(manual.code check_code_in_pages.cmake)
 pcs_add_script_test(manual.named_tests check_named_tests.cmake)
+pcs_add_script_test(tests.are_listed check_listed_tests.cmake)
 pcs_add_script_test(install.versions check_versions.cmake)
