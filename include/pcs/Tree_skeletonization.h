@@ -19,6 +19,7 @@
 #include <pcs/skeleton/input/read_maps.h>
 #include <pcs/skeleton/input/read_options.h>
 #include <pcs/skeleton/resampling/resample_scan.h>
+#include <pcs/skeleton/result/skeleton_warnings.h>
 #include <pcs/skeleton/result/write_points.h>
 #include <pcs/skeleton/result/write_result.h>
 
