@@ -6,13 +6,11 @@
 #define PCS_SHAPE_SPACE_MATCHING_BRANCH_MATCHING_H
 
 #include <pcs/core/Orl_options.h>
-#include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
+#include <pcs/shape_space/matching/Child_assignment.h>
 #include <pcs/shape_space/matching/Matching_energy.h>
 #include <pcs/shape_space/matching/Matching_memo.h>
-#include <pcs/shape_space/matching/assign_whorls.h>
 #include <pcs/shape_space/matching/compare_branches.h>
-#include <pcs/shape_space/matching/linear_assignment.h>
 #include <pcs/shape_space/model/Branch_paths.h>
 #include <pcs/shape_space/model/Matched_branch.h>
 
@@ -25,7 +23,6 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
-#include <numeric>
 #include <set>
 #include <utility>
 #include <vector>
@@ -129,7 +126,7 @@ public:
     const Matching_key question(start_1, start_2, rotation * m_rotation.transpose());
     for (const std::size_t k : {3u, 1u})
       if (const Result* const answer = m_known[k].find(question))
-        return Answer(*answer).cost;
+        return Match_answer(*answer).cost;
     m_effort = 1;
     return match(start_1, start_2, rotation).cost;
   }
@@ -165,28 +162,14 @@ private:
   using Trial = Matching_energy::Trial;
   using Children = Matching_energy::Children;
 
-  static constexpr std::size_t most_at_once = 512; // children that are assigned at a time
-  static constexpr double trunk_slack = 1.05;      // relative error of the cost with one trial
-  static constexpr double largest_share = 0.5;     // unexplained, of trees with a second search
-  static constexpr double unknown = -1;            // cost that was not computed
-  static constexpr double same = 1e-12;            // costs that differ by less are equal
+  static constexpr double trunk_slack = 1.05;  // relative error of the cost with one trial
+  static constexpr double largest_share = 0.5; // unexplained, of trees with a second search
+  static constexpr double same = 1e-12;        // costs that differ by less are equal
 
   /// Returns the largest cost that is less than `cost` by more than rounding. Of matchings of the
   /// same cost, the first one is kept, so that the result does not depend on rounding.
   static double below(double cost) { return cost - same; }
   static double rounded(double cost) { return std::round(cost / same); }
-
-  /// The cost of two children, infinite if they cost as much as unmatched [-], and their matching.
-  /// The matching of a simple pair is made at the end of the search, see `completed()`.
-  struct Answer
-  {
-    Answer(double c) : cost(c) {}
-    Answer(const Result& r) : cost(r ? r->cost : std::numeric_limits<double>::infinity()), branch(r)
-    {
-    }
-    double cost;
-    Result branch;
-  };
 
   /// Matches all pairs of trunks, and the best ones again with more trials. Reports progress from
   /// `begin`, for a half of the search.
@@ -197,7 +180,7 @@ private:
     const auto children = [&](int t) {
       return m_energy.path(t, paths(t).paths_of[0].front()).children.size();
     };
-    const bool is_wide = std::max(children(0), children(1)) > most_at_once;
+    const bool is_wide = std::max(children(0), children(1)) > most_children_at_once;
     std::vector<Trial> trials =
         find_trials(0, 0, rotation, most_cost, is_wide ? m_number_of_trials : m_most_trunk_trials);
     const std::size_t all = trials.size(), most = m_effort = m_number_of_trials;
@@ -269,7 +252,9 @@ private:
     return more > 0 ? (cost - least) / more : 1;
   }
 
-  Answer match(std::size_t start_1, std::size_t start_2, const Eigen::Matrix3d& rotation)
+  /// Matches two children. The match of a simple pair is made at the end of the search, see
+  /// `completed()`.
+  Match_answer match(std::size_t start_1, std::size_t start_2, const Eigen::Matrix3d& rotation)
   {
     const Matching_key question(start_1, start_2, rotation * m_rotation.transpose());
     if (is_simple(start_1, start_2))
@@ -442,8 +427,6 @@ private:
   /// `limit`.
   Result match_children(Trial first, const Eigen::Matrix3d& rotation, double limit)
   {
-    const Branch_path &path_1 = m_energy.path(0, first.path_1),
-                      &path_2 = m_energy.path(1, first.path_2);
     if (!m_energy.is_turned() && first.cost >= limit)
       return nullptr;
     const Compared_branches both = compare_branches(m_energy, std::move(first), rotation);
@@ -462,243 +445,19 @@ private:
       result->cost += m_energy.single_term(w);
     for (const double w : both.children[1].weight)
       result->cost += m_energy.single_term(w);
-    if (!assign_children(path_1,
-                         path_2,
-                         both.children[0],
-                         both.children[1],
-                         both.rotation,
-                         limit,
-                         *result))
+    const auto match_pair = [&](std::size_t start_1, std::size_t start_2) {
+      return match(start_1, start_2, both.rotation);
+    };
+    // with the rounded rotation of the exact costs, otherwise some bounds exceed them
+    const Eigen::Matrix3d inherited = inherited_rotation(both.rotation);
+    const Child_assignment<ConcurrencyTag, decltype(match_pair)> assignment(m_energy,
+                                                                            both.children,
+                                                                            inherited,
+                                                                            match_pair,
+                                                                            limit);
+    if (!assignment.add_pairs(*result))
       return nullptr;
     return result;
-  }
-
-  /// Adds the pairs of children and their gains; returns `false` if the cost is not below `limit`.
-  /// Very many children are assigned in batches, the heaviest first, so time and memory grow
-  /// linearly with their number. Batches do not divide whorls.
-  bool assign_children(const Branch_path& path_1,
-                       const Branch_path& path_2,
-                       const Children& a,
-                       const Children& b,
-                       const Eigen::Matrix3d& turned,
-                       double limit,
-                       Matched_branch& result)
-  {
-    const bool may_keep = m_energy.weights().do_keep_whorls && !m_energy.weights().is_published;
-    std::array<Whorls, 2> groups;
-    if (may_keep && !(groups[0] = find_whorls(a.s)).empty())
-      groups[1] = find_whorls(b.s);
-    const bool are_whorls = !groups[1].empty();
-    if (std::max(a.s.size(), b.s.size()) <= most_at_once) {
-      const std::array<std::vector<std::size_t>, 2> all = {by_index(a), by_index(b)};
-      return assign_some(path_1,
-                         path_2,
-                         a,
-                         b,
-                         all,
-                         are_whorls ? &groups : nullptr,
-                         turned,
-                         limit,
-                         result);
-    }
-    if (!are_whorls)
-      groups = {single_whorls(a.s.size()), single_whorls(b.s.size())};
-    assign_in_batches(path_1, path_2, a, b, std::move(groups), are_whorls, turned, result);
-    return result.cost < limit;
-  }
-
-  void assign_in_batches(const Branch_path& path_1,
-                         const Branch_path& path_2,
-                         const Children& a,
-                         const Children& b,
-                         std::array<Whorls, 2> groups,
-                         bool are_whorls,
-                         const Eigen::Matrix3d& turned,
-                         Matched_branch& result)
-  {
-    sort_by_weight(a, groups[0]);
-    sort_by_weight(b, groups[1]);
-    std::array<Whorls, 2> open;
-    std::array<std::size_t, 2> next = {0, 0};
-    while (next[0] < groups[0].size() || next[1] < groups[1].size()) {
-      for (std::size_t t = 0; t < 2; ++t) {
-        // the lightest unmatched children are tried once more
-        while (number_of_members(open[t]) > most_at_once)
-          open[t].erase(open[t].begin());
-        for (std::size_t n = 0; next[t] < groups[t].size() && n < most_at_once; ++next[t]) {
-          n += groups[t][next[t]].size();
-          open[t].push_back(groups[t][next[t]]);
-        }
-      }
-      const std::array<std::vector<std::size_t>, 2> chosen = {members_of(open[0]),
-                                                              members_of(open[1])};
-      const std::array<Whorls, 2> whorls = {renumbered(open[0]), renumbered(open[1])};
-      const std::size_t first = result.pairs.size();
-      assign_some(path_1,
-                  path_2,
-                  a,
-                  b,
-                  chosen,
-                  are_whorls ? &whorls : nullptr,
-                  turned,
-                  std::numeric_limits<double>::infinity(),
-                  result);
-      for (std::size_t k = first; k < result.pairs.size(); ++k) {
-        erase_whorl(open[0], result.pairs[k].child_1);
-        erase_whorl(open[1], result.pairs[k].child_2);
-      }
-    }
-    std::sort(result.pairs.begin(), result.pairs.end(), [](const auto& x, const auto& y) {
-      return x.child_1 < y.child_1;
-    });
-  }
-
-  static std::vector<std::size_t> by_index(const Children& children)
-  {
-    std::vector<std::size_t> order(children.s.size());
-    std::iota(order.begin(), order.end(), std::size_t(0));
-    return order;
-  }
-
-  /// Sorts groups of children by decreasing weight.
-  static void sort_by_weight(const Children& children, Whorls& groups)
-  {
-    const auto weight = [&](const std::vector<std::size_t>& group) {
-      double sum = 0;
-      for (const std::size_t i : group)
-        sum += children.weight[i];
-      return sum;
-    };
-    std::stable_sort(groups.begin(), groups.end(), [&](const auto& x, const auto& y) {
-      return weight(x) > weight(y);
-    });
-  }
-
-  /// Assigns some children of both branches, first by lower bounds of their costs. Then the costs
-  /// of assigned pairs are replaced by exact ones, until the costs of all assigned pairs are exact.
-  /// `whorls`: by position in `chosen`, or null.
-  bool assign_some(const Branch_path& path_1,
-                   const Branch_path& path_2,
-                   const Children& a,
-                   const Children& b,
-                   const std::array<std::vector<std::size_t>, 2>& chosen,
-                   const std::array<Whorls, 2>* whorls,
-                   const Eigen::Matrix3d& turned,
-                   double limit,
-                   Matched_branch& result)
-  {
-    const std::vector<std::size_t>&rows = chosen[0], &columns = chosen[1];
-    const std::size_t n = rows.size(), m = columns.size();
-    std::vector<double> gain(n * m);
-    std::vector<Answer> exact(n * m, Answer(unknown));
-    const double parent_length = m_energy.length(0, result.path_1);
-    const auto rest = [&](std::size_t i, std::size_t j) {
-      return m_energy.position_term(a.length[i], b.length[j], a.s[i], b.s[j], parent_length) -
-             m_energy.single_term(a.weight[i]) - m_energy.single_term(b.weight[j]);
-    };
-    std::array<std::vector<std::size_t>, 2> starts;
-    for (const std::size_t i : rows)
-      starts[0].push_back(a.start[i]);
-    for (const std::size_t j : columns)
-      starts[1].push_back(b.start[j]);
-    // with the rounded rotation of the exact costs, otherwise some bounds exceed them
-    m_energy.least_costs(starts[0],
-                         starts[1],
-                         inherited_rotation(turned),
-                         [&](std::size_t r, std::size_t c, double least) {
-                           gain[r * m + c] = least + rest(rows[r], columns[c]);
-                         });
-    const auto match_pair = [&](std::size_t r, std::size_t c) {
-      const std::size_t i = rows[r], j = columns[c];
-      Answer& found = exact[r * m + c];
-      found = match(path_1.children[i].start, path_2.children[j].start, turned);
-      gain[r * m + c] = std::isfinite(found.cost) ? found.cost + rest(i, j) : 0;
-    };
-    const auto make_exact = [&](auto& assignment) {
-      return make_pairs_exact(a,
-                              b,
-                              rows,
-                              columns,
-                              match_pair,
-                              limit,
-                              gain,
-                              exact,
-                              assignment,
-                              result);
-    };
-    if (whorls != nullptr) {
-      Whorl_assignment assignment((*whorls)[0], (*whorls)[1], gain);
-      return make_exact(assignment);
-    }
-    Assignment assignment(n, m, gain);
-    assignment.solve();
-    return make_exact(assignment);
-  }
-
-  /// Replaces the bounds of assigned pairs by exact costs until all of them are exact. Adds the
-  /// pairs and their gains; returns `false` if the cost is not below `limit`.
-  template <class MatchPair, class Pairs>
-  bool make_pairs_exact(const Children& a,
-                        const Children& b,
-                        const std::vector<std::size_t>& rows,
-                        const std::vector<std::size_t>& columns,
-                        const MatchPair& match_pair,
-                        double limit,
-                        const std::vector<double>& gain,
-                        const std::vector<Answer>& exact,
-                        Pairs& assignment,
-                        Matched_branch& result)
-  {
-    const std::size_t n = rows.size(), m = columns.size();
-    const std::vector<std::size_t>& partner = assignment.columns();
-    std::vector<std::size_t> wanted;
-    for (;;) {
-      wanted.clear();
-      double bound = result.cost;
-      for (std::size_t r = 0; r < n; ++r)
-        if (partner[r] != none) {
-          bound += gain[r * m + partner[r]];
-          if (exact[r * m + partner[r]].cost == unknown)
-            wanted.push_back(r);
-        }
-      if (bound >= limit)
-        return false;
-      if (wanted.empty())
-        break;
-      keep_heaviest(a, b, rows, columns, partner, wanted);
-      pcs::internal::for_each_index<ConcurrencyTag>(
-          wanted.size(),
-          [&](std::size_t k) { match_pair(wanted[k], partner[wanted[k]]); },
-          1);
-      assignment.raise(wanted);
-    }
-    for (std::size_t r = 0; r < n; ++r)
-      if (partner[r] != none) {
-        result.cost += gain[r * m + partner[r]];
-        result.pairs.push_back({rows[r], columns[partner[r]], exact[r * m + partner[r]].branch});
-      }
-    return true;
-  }
-
-  /// Keeps the rows of the heaviest pairs: if the cost exceeds the limit, few pairs often show it.
-  static void keep_heaviest(const Children& a,
-                            const Children& b,
-                            const std::vector<std::size_t>& rows,
-                            const std::vector<std::size_t>& columns,
-                            const std::vector<std::size_t>& partner,
-                            std::vector<std::size_t>& wanted)
-  {
-    constexpr std::size_t fewest = 16, part = 3;
-    const std::size_t number = std::max(fewest, wanted.size() / part);
-    if (wanted.size() <= number)
-      return;
-    const auto weight = [&](std::size_t r) {
-      return a.weight[rows[r]] + b.weight[columns[partner[r]]];
-    };
-    std::stable_sort(wanted.begin(), wanted.end(), [&](std::size_t r, std::size_t s) {
-      return weight(r) > weight(s);
-    });
-    wanted.resize(number);
   }
 
   Matching_energy m_energy;
