@@ -1111,6 +1111,16 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(orl_errors)
 
+BOOST_AUTO_TEST_CASE(a_refused_tree_leaves_a_built_space_unchanged)
+{
+  Space space = make_space(random_tree(22, 2, 2), random_tree(23, 2, 2));
+  const double before = space.distance(0, 1);
+  BOOST_CHECK_THROW(space.add_skeleton(Tree(1)), pcs::Invalid_input);
+  BOOST_TEST_REQUIRE(space.number_of_trees() == 2u);
+  BOOST_TEST(space.distance(0, 1) == before);
+  BOOST_TEST(before > 0);
+}
+
 BOOST_AUTO_TEST_CASE(broken_trees_are_refused_with_a_reason)
 {
   Space space;

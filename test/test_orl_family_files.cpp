@@ -10,10 +10,12 @@
 
 #include <boost/test/unit_test.hpp>
 
+#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <string>
 #include <unistd.h>
 #include <vector>
@@ -69,13 +71,55 @@ BOOST_AUTO_TEST_CASE(weights_of_the_matching_are_kept)
   Matching_weights weights;
   weights.trunk_fork_ratio = 0.125;
   weights.number_of_paths = 2000;
+  weights.do_keep_whorls = false;
   Space space, other;
   for (const Tree& tree : relatives(3, 51))
     space.add_skeleton(tree);
   space.build(np::matching_weights(weights));
   other.restore(space.data());
   BOOST_TEST((other.data().matching == space.data().matching));
-  BOOST_TEST(other.data().matching.back() == 0.125);
+  BOOST_TEST(other.data().matching[13] == 0.125);
+  BOOST_TEST(other.data().matching.back() == 0);
+}
+
+BOOST_AUTO_TEST_CASE(files_of_version_5_have_no_confidences)
+{
+  const std::vector<Tree> trees = relatives(2, 51);
+  Space space;
+  for (const Tree& tree : trees)
+    space.add_skeleton(tree);
+  space.build();
+  const std::string path = (std::filesystem::temp_directory_path() /
+                            ("pcs_version_" + std::to_string(getpid()) + ".txt"))
+                               .string();
+  pcs::Orl_space_data data = space.data();
+  for (auto& branch : data.branches)
+    branch.confidence = std::numeric_limits<double>::quiet_NaN();
+  pcs::IO::write_shape_space(path, data);
+  std::string text;
+  {
+    std::ifstream in(path);
+    text.assign(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
+  }
+  const std::size_t version = text.find("pcs_shape_space 6"), end = text.find(" 1\nbranches");
+  BOOST_TEST_REQUIRE(version == 0u);
+  BOOST_TEST_REQUIRE(end != std::string::npos); // whorls are kept
+  text.erase(end, 2);
+  text[16] = '5';
+  for (std::size_t at = text.find("branches"), last = text.find("references");;) {
+    at = text.find(" -\n", at);
+    if (at > last)
+      break;
+    text.erase(at, 2);
+    last -= 2;
+  }
+  std::ofstream(path) << text;
+  Space other;
+  other.restore(pcs::IO::read_shape_space(path));
+  std::filesystem::remove(path);
+  BOOST_TEST(space.distance(space.embed(trees[1]), other.embed(trees[1])) == 0);
+  for (const auto& match : other.matches())
+    BOOST_TEST(std::isnan(match.confidence));
 }
 
 BOOST_AUTO_TEST_CASE(a_space_is_saved_and_restored)
@@ -106,6 +150,20 @@ BOOST_AUTO_TEST_CASE(a_space_is_saved_and_restored)
                               other.embed(trees[0], np::default_values(), &share)) == 0);
     BOOST_CHECK_THROW(other.build(), pcs::Invalid_input);
     BOOST_CHECK_THROW(other.add_skeleton(trees[0]), pcs::Invalid_input);
+    if (n == 2) {
+      const auto matches = space.matches(), stored = other.matches();
+      BOOST_TEST_REQUIRE(stored.size() == matches.size());
+      std::size_t number_of_confidences = 0;
+      for (std::size_t m = 0; m < matches.size(); ++m) {
+        BOOST_TEST(stored[m].parent == matches[m].parent);
+        BOOST_TEST((stored[m].tip == matches[m].tip));
+        const double a_confidence = matches[m].confidence, b_confidence = stored[m].confidence;
+        number_of_confidences += std::isfinite(a_confidence) ? 1 : 0;
+        BOOST_TEST((a_confidence == b_confidence ||
+                    (std::isnan(a_confidence) && std::isnan(b_confidence))));
+      }
+      BOOST_TEST(number_of_confidences > 0u);
+    }
 
     // A truncated file is rejected.
     std::string text;
@@ -126,6 +184,7 @@ BOOST_AUTO_TEST_CASE(a_space_is_saved_and_restored)
     };
     refuse([](auto& d) { d.branches[1].parent = 5; });
     refuse([](auto& d) { d.branches[1].reference_edge = 100000; });
+    refuse([](auto& d) { d.branches[1].confidence = 1.5; });
     refuse([](auto& d) { d.references.push_back({0, 0}); });
     refuse([](auto& d) { d.references.push_back({100000, 1}); });
     refuse([](auto& d) { // the first edge of a branch, and the last one of its parent

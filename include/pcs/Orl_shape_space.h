@@ -136,10 +136,12 @@ public:
     pcs::internal::check(!m_state.is_restored,
                          caller,
                          "the space was restored; add trees to a new one");
+    shape_space::Tree_input input =
+        shape_space::make_tree_input<Kernel>(tree, scan, np, caller); // may throw
+    m_state.inputs.push_back(std::move(input));
     shape_space::Space_state state;
     state.inputs = std::move(m_state.inputs);
     m_state = std::move(state);
-    m_state.inputs.push_back(shape_space::make_tree_input<Kernel>(tree, scan, np, caller));
     return m_state.inputs.size() - 1;
   }
 
@@ -283,7 +285,7 @@ public:
     for (std::size_t b = 0; b < family().layout.branches.size(); ++b)
       result.push_back({family().layout.branches[b].parent,
                         {family().tip[0][b], family().tip[1][b]},
-                        m_state.pair.topology.branches[b].confidence});
+                        family().confidence[b]});
     return result;
   }
 

@@ -41,12 +41,16 @@ private:
   void read_head(Orl_space_data& s)
   {
     m_file.expect("pcs_shape_space");
-    m_file.expect("5");
+    m_is_version_5 = m_file.skip("5");
+    if (!m_is_version_5 && !m_file.skip("6"))
+      m_file.fail("expected '5' or '6', the versions that can be read");
     m_file.expect("orientation");
     s.orientation = m_file.number<int>("the kind of orientations");
     read_all(s.origin);
     m_file.expect("matching");
-    read_all(s.matching);
+    s.matching.back() = 1; // whorls are kept, as in version 5
+    for (std::size_t i = 0; i < s.matching.size() - (m_is_version_5 ? 1 : 0); ++i)
+      s.matching[i] = m_file.real("a number");
   }
   /// Reads the branches and the edges that refer to earlier ones.
   void read_branches(Orl_space_data& s)
@@ -57,6 +61,8 @@ private:
       b.parent = index();
       b.number_of_edges = m_file.count("the number of edges");
       b.reference_edge = index();
+      if (!m_is_version_5 && !m_file.skip("-"))
+        b.confidence = m_file.real("confidence");
       s.branches.push_back(b);
     }
     m_file.expect("references");
@@ -180,6 +186,7 @@ private:
   }
 
   Word_reader m_file;
+  bool m_is_version_5 = false;
 };
 
 } // namespace internal
@@ -189,6 +196,8 @@ private:
   \brief reads a file of `write_shape_space()`.
 
   `Orl_shape_space::restore()` checks whether the numbers are consistent.
+
+  Files of the previous version, 5, have no confidences; these are NaN then.
 
   \param path name of the file
   \throws pcs::IO_error with the line and the expected content

@@ -10,6 +10,7 @@
 #include <pcs/core/Orl_space_data.h>
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -39,7 +40,7 @@ public:
 private:
   void write_head(const Orl_space_data& s)
   {
-    m_line = "pcs_shape_space 5\norientation";
+    m_line = "pcs_shape_space 6\norientation";
     add(s.orientation);
     add_all(s.origin);
     end();
@@ -55,6 +56,10 @@ private:
       add_index(b.parent);
       add(b.number_of_edges);
       add_index(b.reference_edge);
+      if (std::isfinite(b.confidence))
+        add(b.confidence);
+      else
+        m_line += " -";
       end();
     }
     begin("references", s.references.size());

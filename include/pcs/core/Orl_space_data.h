@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace pcs {
@@ -27,6 +28,8 @@ struct Orl_space_data
   struct Branch
   {
     std::size_t parent = none, number_of_edges = 1, reference_edge = none;
+    //! of the match, see `Branch_match::confidence`; NaN: not known, or more than two trees [-]
+    double confidence = std::numeric_limits<double>::quiet_NaN();
   };
   //! coordinates of a tree, per edge and per branch
   struct Tree
@@ -66,7 +69,7 @@ struct Orl_space_data
   std::vector<Tree> trees;
   Tree reference;
   Weights weights;
-  std::array<double, 14> matching = {}; ///< `Matching_weights`
+  std::array<double, 15> matching = {}; ///< `Matching_weights`
   std::vector<Orl_correspondences::Pair> pairs;
   bool has_normals = false;
   std::vector<Point> points;

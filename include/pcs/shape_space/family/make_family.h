@@ -75,6 +75,8 @@ inline Tree_family make_family(const Embedded_pair& pair,
               : inputs[t]->tree.sources[pair.topology.paths[t].paths[b.path[t]].tip()]);
     }
   }
+  for (const Common_branch& b : pair.topology.branches)
+    family.confidence.push_back(b.confidence);
   coordinates_at(pair.layout, pair.x[0], pair.x[1], 0.5, 0, family.reference);
   for (std::size_t b = 0; b < pair.layout.branches.size(); ++b)
     for (std::size_t t = 0; t < 2; ++t)

@@ -63,8 +63,11 @@ inline Orl_space_data store_family(const Tree_family& family)
   Orl_space_data result;
   result.orientation = static_cast<int>(family.orientation);
   result.origin = internal::to_array(family.origin);
-  for (const Orl_layout::Branch& b : family.layout.branches) {
+  for (std::size_t i = 0; i < family.layout.branches.size(); ++i) {
+    const Orl_layout::Branch& b = family.layout.branches[i];
     result.branches.push_back({b.parent, b.number_of_edges, b.reference_edge});
+    if (!family.confidence.empty())
+      result.branches.back().confidence = family.confidence[i];
     for (std::size_t e = b.first_edge + 1; e < b.first_edge + b.number_of_edges; ++e)
       if (family.layout.edge_before[e] + 1 != e)
         result.references.push_back({e, family.layout.edge_before[e]});
@@ -91,7 +94,8 @@ inline Orl_space_data store_family(const Tree_family& family)
                      m.length,
                      m.rotation,
                      m.half_cost_distance,
-                     m.trunk_fork_ratio};
+                     m.trunk_fork_ratio,
+                     m.do_keep_whorls ? 1.0 : 0.0};
   return result;
 }
 
@@ -174,6 +178,8 @@ private:
     for (std::size_t j = 0; j < branch.number_of_edges; ++j)
       layout.edge_before.push_back(j == 0 ? branch.reference_edge : branch.first_edge + j - 1);
     layout.branches.push_back(branch);
+    check(!(b.confidence < 0 || b.confidence > 1), "a confidence is not between 0 and 1");
+    m_family.confidence.push_back(b.confidence);
   }
 
   void check_tree(const Orl_space_data::Tree& t) const
@@ -247,6 +253,7 @@ private:
     weights.rotation = stored[11];
     weights.half_cost_distance = stored[12];
     weights.trunk_fork_ratio = stored[13];
+    weights.do_keep_whorls = stored[14] != 0;
   }
 
   const Orl_space_data& m_stored;

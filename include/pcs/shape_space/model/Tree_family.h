@@ -23,6 +23,7 @@ struct Tree_family
   std::vector<Orl_coordinates> x;            ///< of each tree
   std::vector<std::vector<char>> has;        ///< per tree and branch
   std::vector<std::vector<std::size_t>> tip; ///< vertex at the tip, per tree and branch, or `none`
+  std::vector<double> confidence; ///< of the matches of two trees, per branch; NaN: not known [-]
   Orl_weights weights;
   Orl_coordinates reference;  ///< reference tree: medians over the trees with each branch
   Vec3 origin = Vec3::Zero(); ///< of the coordinates, in those of the caller [L]
