@@ -221,6 +221,15 @@ BOOST_AUTO_TEST_CASE(moments_of_new_trees_are_those_of_the_inputs)
   BOOST_TEST(std::abs(drawn / given - 1) < 0.1);
 }
 
+BOOST_AUTO_TEST_CASE(distributions_of_other_spaces_are_rejected)
+{
+  const Space space = make_space(relatives(4, 21)), other = make_space(relatives(4, 22)),
+              same = make_space(relatives(4, 21));
+  const auto distribution = pcs::learn_distribution(other);
+  BOOST_CHECK_THROW(pcs::sample_tree(space, distribution, 1, 0), pcs::Invalid_input);
+  BOOST_CHECK_NO_THROW(pcs::sample_tree(space, pcs::learn_distribution(same), 1, 0));
+}
+
 BOOST_AUTO_TEST_CASE(limits_hold_when_asked_for)
 {
   const Family space(5);

@@ -108,7 +108,8 @@ Orl_tree sample_tree(const Orl_shape_space<Kernel, ConcurrencyTag>& space,
   const Tree_sampling_options options = shape_space::read_sampling_options(np, caller);
   const shape_space::Tree_family& family = space.family();
   shape_space::check_built(family, caller);
-  pcs::internal::check(from.distribution && from.descriptors.size() == space.number_of_trees(),
+  pcs::internal::check(from.distribution && from.descriptors.size() == space.number_of_trees() &&
+                           from.distribution->is_of(family.layout, family.has),
                        caller,
                        "the distribution is of another space");
   const std::vector<double> scan_weights =

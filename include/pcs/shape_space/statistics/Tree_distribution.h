@@ -91,6 +91,18 @@ public:
       estimate_shrinkage();
   }
 
+  /// Returns whether the trees have the given branches and edges; `has[t][b]` as above.
+  bool is_of(const Orl_layout& layout, const std::vector<std::vector<char>>& has) const
+  {
+    return m_has == has && m_layout.edge_before == layout.edge_before &&
+           m_layout.parent_edge == layout.parent_edge &&
+           std::equal(m_layout.branches.begin(),
+                      m_layout.branches.end(),
+                      layout.branches.begin(),
+                      layout.branches.end(),
+                      [](const auto& a, const auto& b) { return a.first_edge == b.first_edge; });
+  }
+
   /// Draws tree `index` of a sequence of random trees. The result depends only on the seed, the
   /// index and the options.
   Orl_coordinates
