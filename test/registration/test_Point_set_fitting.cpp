@@ -8,6 +8,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace test_Point_set_fitting {
@@ -36,6 +37,17 @@ BOOST_AUTO_TEST_CASE(a_template_follows_a_sequence_and_returns)
   }
   session.reset();
   BOOST_TEST((source == rest));
+}
+
+BOOST_AUTO_TEST_CASE(an_object_that_was_moved_from_says_so)
+{
+  const Points target = pcs_test::star(100, 1);
+  Points source = pcs_test::star(100, 0);
+  pcs::Point_set_fitting session(source);
+  auto taken = std::move(session);
+  BOOST_CHECK_THROW(session.fit(target), pcs::Invalid_input);
+  BOOST_CHECK_THROW(session.reset(), pcs::Invalid_input);
+  BOOST_CHECK_NO_THROW(taken.reset());
 }
 
 BOOST_AUTO_TEST_CASE(a_cold_fit_does_not_depend_on_earlier_ones)

@@ -37,7 +37,6 @@ struct Fit_report
   double rms_residual = 0;         ///< the same, root mean square [L]
   double largest_landmark_gap = 0; ///< largest distance of a landmark from its target [L]
   double rms_displacement = 0;     ///< of all source points [L]
-  double target_spacing = 0;       ///< median distance of a target point to its nearest one [L]
 
   //! whether at least `least_matched_share` of the source points are matched, with a median
   //! residual below `largest_plausible_residual` extents of the source

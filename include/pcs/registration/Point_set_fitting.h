@@ -236,7 +236,9 @@ public:
   /// Restores the source at rest, with all bits of its positions.
   void reset()
   {
-    internal::check(m_is_ready, "pcs::fit_point_set()", "the construction was cancelled");
+    const char* function = "pcs::fit_point_set()";
+    internal::check(m_session != nullptr, function, "the object was moved from");
+    internal::check(m_is_ready, function, "the construction was cancelled");
     m_session->put_at_rest();
     m_has_shape = false;
     internal::for_each_index<ConcurrencyTag>(m_session->number_of_points(), [&](std::size_t i) {

@@ -31,8 +31,6 @@ constexpr std::size_t neighbors_of_normal = 16;
 /// Rank of the neighbour whose distance is the reach of a point. On a uniform surface, the reach is
 /// 1.6 times the side of the square that belongs to a point. [count]
 constexpr std::size_t neighbor_of_reach = 8;
-/// Number of nearest points whose tangent planes are considered for one query. [count]
-constexpr std::size_t candidates_of_match = 4;
 
 /// Largest reach of a point of a surface. Steps of the density by a factor of four have a ratio
 /// of 2. [median reaches of the neighbours]

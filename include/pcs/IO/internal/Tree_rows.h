@@ -170,7 +170,7 @@ private:
   {
     std::vector<std::size_t> walk_of(rows.size(), npos);
     for (std::size_t i = 0; i < rows.size(); ++i)
-      for (std::size_t v = i; v != npos && walk_of[v] != npos - 1; v = m_parents[v]) {
+      for (std::size_t v = i; v != npos; v = m_parents[v]) {
         if (walk_of[v] == i)
           fail(rows[v], "the parents of this node form a cycle");
         if (walk_of[v] != npos)
