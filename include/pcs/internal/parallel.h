@@ -67,6 +67,49 @@ constexpr bool is_parallel()
 /// Number of indices per task. It is fixed, so that no result depends on the number of threads.
 constexpr std::size_t default_block = 1024;
 
+/// A reference to a function of an index. Loops that take it are compiled once, not for each
+/// function: the templates of TBB take long to compile.
+class Index_function
+{
+public:
+  template <class F>
+  explicit Index_function(const F& f)
+    : m_f(&f), m_call([](const void* g, std::size_t i) { (*static_cast<const F*>(g))(i); })
+  {
+  }
+  void operator()(std::size_t i) const { m_call(m_f, i); }
+
+private:
+  const void* m_f;
+  void (*m_call)(const void*, std::size_t);
+};
+
+#if PCS_HAS_TBB
+/// Calls `f(i)` for every `i` in `[0, n)`, each on one of several threads.
+inline void run_tasks(std::size_t n, const Index_function& f)
+{
+#if defined(PCS_HAS_THREAD_SANITIZER)
+  run_tasks_in_two_threads(n, f);
+#else
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n),
+                    [&](const tbb::blocked_range<std::size_t>& r) {
+                      for (std::size_t i = r.begin(); i != r.end(); ++i)
+                        f(i);
+                    });
+#endif
+}
+
+/// Calls `f(0)` and `f(1)`, each on one of two threads.
+inline void run_two_tasks(const Index_function& f)
+{
+#if defined(PCS_HAS_THREAD_SANITIZER)
+  run_in_two_threads([&] { f(0); }, [&] { f(1); });
+#else
+  tbb::parallel_invoke([&] { f(0); }, [&] { f(1); });
+#endif
+}
+#endif
+
 /// Calls `f(begin, end)` for consecutive blocks of at most `block` indices that cover `[0, n)`.
 template <class ConcurrencyTag, class F>
 void for_each_block(std::size_t n, std::size_t block, const F& f)
@@ -76,15 +119,7 @@ void for_each_block(std::size_t n, std::size_t block, const F& f)
     if (n > block) {
       const std::size_t number_of_blocks = (n + block - 1) / block;
       const auto run = [&](std::size_t b) { f(b * block, std::min(n, (b + 1) * block)); };
-#if defined(PCS_HAS_THREAD_SANITIZER)
-      run_tasks_in_two_threads(number_of_blocks, run);
-#else
-      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, number_of_blocks),
-                        [&](const tbb::blocked_range<std::size_t>& r) {
-                          for (std::size_t b = r.begin(); b != r.end(); ++b)
-                            run(b);
-                        });
-#endif
+      run_tasks(number_of_blocks, Index_function(run));
       return;
     }
 #endif
@@ -165,11 +200,13 @@ void invoke_both(const F& f, const G& g)
 {
   if constexpr (is_parallel<ConcurrencyTag>()) {
 #if PCS_HAS_TBB
-#if defined(PCS_HAS_THREAD_SANITIZER)
-    run_in_two_threads(f, g);
-#else
-    tbb::parallel_invoke(f, g);
-#endif
+    const auto both = [&](std::size_t i) {
+      if (i == 0)
+        f();
+      else
+        g();
+    };
+    run_two_tasks(Index_function(both));
     return;
 #endif
   }
