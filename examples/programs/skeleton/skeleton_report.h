@@ -5,7 +5,7 @@
 #ifndef PCS_EXAMPLES_PROGRAMS_SKELETON_SKELETON_REPORT_H
 #define PCS_EXAMPLES_PROGRAMS_SKELETON_SKELETON_REPORT_H
 
-#include <pcs/core/Skeleton_report.h>
+#include <pcs/extract_tree_skeleton.h>
 
 #include <nlohmann/json.hpp>
 

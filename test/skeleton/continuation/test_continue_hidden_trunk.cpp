@@ -4,6 +4,7 @@
 
 #include <pcs/core/Skeleton_report.h>
 #include <pcs/skeleton/continuation/continue_hidden_trunk.h>
+#include <pcs/skeleton/result/skeleton_warnings.h>
 
 #include <boost/test/unit_test.hpp>
 

@@ -4,6 +4,7 @@
 
 #include <pcs/core/Skeleton_report.h>
 #include <pcs/skeleton/continuation/follow_thick_ends.h>
+#include <pcs/skeleton/result/skeleton_warnings.h>
 #include <pcs/skeleton/scan/prepare_scan.h>
 
 #include <CGAL/tags.h>

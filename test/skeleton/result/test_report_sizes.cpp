@@ -3,6 +3,7 @@
 // Diameter at breast height: that of the tapered trunk at this height, with smoothed bark.
 
 #include <pcs/skeleton/result/report_sizes.h>
+#include <pcs/skeleton/result/skeleton_warnings.h>
 #include <support/axes.h>
 
 #include <boost/test/unit_test.hpp>
