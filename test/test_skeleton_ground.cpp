@@ -59,6 +59,27 @@ BOOST_AUTO_TEST_CASE(ground_is_followed_up_slopes)
   }
 }
 
+// Scans are cut along roads, and trees of a stand with some ground around each of them.
+BOOST_AUTO_TEST_CASE(ground_may_be_a_strip_or_patches)
+{
+  Tree bare, tree;
+  const Cloud& wood = pcs_test::small_scan().scan.points;
+  const auto expected = pcs::extract_tree_skeleton(wood, bare);
+  const auto check = [&](const auto& is_inside) {
+    Cloud points = wood;
+    for (int i = -300; i <= 300; ++i)
+      for (int j = -90; j <= 90; ++j)
+        if (is_inside(0.03 * i, 0.03 * j))
+          points.emplace_back(0.03 * i, 0.03 * j, 0.002 * std::sin(7.0 * i * j));
+    const auto report = pcs::extract_tree_skeleton(points, tree);
+    BOOST_TEST(double(report.number_of_ground_points) > 0.97 * double(points.size() - wood.size()));
+    BOOST_CHECK_EQUAL(report.method, pcs::Skeleton_method::chains);
+    BOOST_CHECK_CLOSE(report.total.volume, expected.total.volume, 15.0);
+  };
+  check([](double, double y) { return std::abs(y) < 0.8; });
+  check([](double x, double y) { return std::hypot(std::abs(x - 3.5) - 3.5, y) < 1.5; });
+}
+
 BOOST_AUTO_TEST_CASE(grass_goes_with_the_ground)
 {
   std::mt19937 random(4);

@@ -7,6 +7,7 @@
 
 #include <pcs/internal/median.h>
 #include <pcs/skeleton/clutter/Terrain.h>
+#include <pcs/skeleton/clutter/covers_area.h>
 #include <pcs/skeleton/clutter/is_single_sheet.h>
 #include <pcs/skeleton/graph/Neighbor_graph.h>
 #include <pcs/skeleton/layers/Stem_foot.h>
@@ -17,6 +18,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -28,14 +30,15 @@
 namespace pcs {
 namespace skeleton {
 
-/// Criteria for a terrain to be ground: a filled patch, much wider than the stem above it.
+/// Criteria for a terrain to be ground: an area of any outline, much wider than the stem above it.
 struct Ground_options
 {
-  double noise = 4;     ///< thickness of ground, in multiples of the terrain noise [-]
-  double crowd = 5;     ///< points per cell of a uniform distribution [count] ...
-  double spread = 0.55; ///< ... and least fraction of these cells that contain points [-]
-  double width = 3;     ///< least distance of its farthest points from the stem, in stem widths [-]
-  double lying = 0.01;  ///< least ratio of other points to ground if there is no stem [-]
+  double noise = 4;    ///< thickness of ground, in multiples of the terrain noise [-]
+  double crowd = 5;    ///< median points of a cell of the ground, see `covers_area()` [count],
+  double flat = 3;     ///< least side of these cells, in thicknesses of the ground [-], ...
+  double spread = 0.7; ///< ... and least fraction of their neighbours that contain points [-]
+  double width = 3;    ///< least distance of its farthest points from the stem, in stem widths [-]
+  double lying = 0.01; ///< least ratio of other points to ground if there is no stem [-]
   double bin = 0.01;   ///< height of a bin / vertical extent; the height is at least 4 spacings [-]
   int bins = 12;       ///< lowest bins for the search of the stem [count]
   double keep = 2;     ///< radius around the stem without search of plants, in stem widths [-]
@@ -247,15 +250,20 @@ private:
     });
   }
 
-  Sheet_disc disc(const std::vector<Index>& points, const Vec3& center) const
+  /// Returns the horizontal coordinates of points [L].
+  std::vector<std::array<double, 2>> places_of(const std::vector<Index>& points) const
   {
-    const Vec3 e1 = m_up.unitOrthogonal();
-    return Sheet_disc(m_scan, points, center, e1, m_up.cross(e1));
+    const Vec3 e1 = m_up.unitOrthogonal(), e2 = m_up.cross(e1);
+    std::vector<std::array<double, 2>> places;
+    for (const Index i : points)
+      places.push_back({e1.dot(m_scan.points[i]), e2.dot(m_scan.points[i])});
+    return places;
   }
 
   bool is_filled(const std::vector<Index>& points, const Stem_foot& foot) const
   {
-    const Sheet_disc sheet = disc(points, foot.center);
+    const Vec3 e1 = m_up.unitOrthogonal();
+    const Sheet_disc sheet(m_scan, points, foot.center, e1, m_up.cross(e1));
     return sheet.is_filled(std::max(sheet.radius / m_rules.sheet.cells, 3 * m_scan.spacing),
                            m_rules.filled);
   }
@@ -269,19 +277,16 @@ private:
     std::vector<double> height(m_scan.size());
     std::vector<Index> layer;
     std::vector<std::uint8_t> is_standing = m_is_used;
-    Vec3 center = Vec3::Zero();
     for (Index i = 0; i < m_scan.size(); ++i) {
       height[i] = terrain.height(m_scan.points[i]) - thickness;
       if (!m_is_used[i] || height[i] > 0)
         continue;
       is_standing[i] = 0;
       layer.push_back(i);
-      center += m_scan.points[i];
     }
     if (layer.empty())
       return;
-    const Sheet_disc sheet = disc(layer, center / double(layer.size()));
-    if (!sheet.is_filled(sheet.cell_of(m_rules.crowd), m_rules.spread))
+    if (!covers_area(places_of(layer), m_rules.crowd, m_rules.flat * thickness, m_rules.spread))
       return;
     const Low_bins bins(m_scan, height, m_rules, is_standing);
     const auto foot =
@@ -350,8 +355,8 @@ struct Ground
 };
 
 /*!
-  Removes ground from `is_used`. Ground is a terrain below all other points. It is a filled patch
-  much wider than the stem, or an object lies on it. Plants that cover it are removed, too. `links`:
+  Removes ground from `is_used`. Ground is a terrain below all other points. It covers an area of
+  any outline and is much wider than the stem, or an object lies on it. Plants that cover it are removed, too. `links`:
   links between neighbours. O(n log n).
 */
 inline Ground mark_ground(const Scan& scan,
