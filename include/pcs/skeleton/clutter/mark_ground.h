@@ -356,8 +356,8 @@ struct Ground
 
 /*!
   Removes ground from `is_used`. Ground is a terrain below all other points. It covers an area of
-  any outline and is much wider than the stem, or an object lies on it. Plants that cover it are removed, too. `links`:
-  links between neighbours. O(n log n).
+  any outline and is much wider than the stem, or an object lies on it. Plants that cover it are
+  removed, too. `links`: links between neighbours. O(n log n).
 */
 inline Ground mark_ground(const Scan& scan,
                           const Compact_links& links,
