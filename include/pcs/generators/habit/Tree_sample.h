@@ -10,6 +10,7 @@
 #include <CGAL/number_utils.h>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>

@@ -9,6 +9,7 @@
 #include <pcs/internal/parallel.h>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>

@@ -31,7 +31,8 @@ struct Sheet_options
   double thin = 0.1;       ///< largest ratio of the deviations across and along a sheet [-]
   double full = 0.7;       ///< least fraction of its cells that contain points [-]
   double longest = 8;      ///< largest ratio of its length to its width [-]
-  double standing = 0.999; ///< quantile of distances from its plane, the height of a tree on it [-]
+  double stray = 0.001;    ///< fraction of points that may be higher than a tree on it [-] ...
+  std::size_t strays = 50; ///< ... and their largest number [count]
   double tall = 0.5;       ///< least ratio of that height to the horizontal deviation of the tree
   double outstanding = 10; ///< least ratio of that height to the median distance of all points [-]
 };
@@ -102,9 +103,9 @@ inline bool carries_a_tree(const Scan& scan,
     h = std::abs(h - level);
   sorted = heights;
   const double usual = pcs::internal::lower_median(sorted);
-  const double high = pcs::internal::value_of_rank(
-      sorted,
-      static_cast<std::size_t>(rules.standing * double(sorted.size())));
+  const auto strays =
+      std::min(rules.strays, static_cast<std::size_t>(rules.stray * double(sorted.size())));
+  const double high = pcs::internal::value_of_rank(sorted, sorted.size() - 1 - strays);
   if (!(high > rules.outstanding * usual))
     return false;
   std::vector<Index> standing;

@@ -9,6 +9,7 @@
 #include <pcs/skeleton/model/Scan.h>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>

@@ -14,6 +14,7 @@
 #include <pcs/skeleton/registration/fit_scan_grid.h>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
