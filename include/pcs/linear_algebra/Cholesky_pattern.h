@@ -24,7 +24,8 @@ namespace linear_algebra {
 /*!
   The symbolic half of a Cholesky factorisation. Adjacent columns of the factor with (almost) the
   same rows form one dense *panel*, a supernode: its own `w` rows first, then `m` rows below, which
-  belong to its ancestors. Panels are stored column by column, `(w + m) w` values each.
+  belong to its ancestors. The entries below the diagonal are stored panel by panel, column by
+  column: `w (w - 1) / 2 + w m` values each.
 
   Order: minimum degree (Amestoy, Davis, Duff 1996) or a given order, then postorder of the
   elimination tree (Liu 1990). Column counts: Gilbert, Ng, Peyton 1994. Except for the order, the
@@ -44,15 +45,22 @@ public:
   std::vector<std::uint32_t> row;       ///< rows below the supernodes, increasing
   std::vector<std::uint32_t> in_parent; ///< index of each of these rows in the rows of the parent
   std::vector<std::size_t> first_value; ///< of each panel, and the end
-  std::vector<std::size_t> place; ///< index in the panels of every entry of the lower triangle
-  std::size_t stack_size = 0;     ///< maximum number of values stored for a later parent
+  /// An entry of the lower triangle of the matrix, without the diagonal.
+  struct Entry
+  {
+    std::uint32_t place; ///< in its panel with all `w + m` rows of each column
+    std::uint32_t index; ///< among all entries of the matrix
+  };
+  std::vector<Entry> matrix_entry;             ///< by supernode
+  std::vector<std::size_t> first_matrix_entry; ///< of each supernode, and the end
+  std::size_t stack_size = 0; ///< maximum number of values stored for a later parent
   std::size_t largest_number_of_rows_below = 0;
-  std::size_t largest_panel = 0; ///< [count of values]
+  std::size_t largest_panel = 0; ///< with all rows [count of values]
   Elimination_subtrees subtrees;
 
   Cholesky_pattern() = default;
 
-  /// \param a square; entries above the diagonal are ignored
+  /// \param a square and compressed; entries above the diagonal are ignored
   /// \param rank distinct numbers, one per row: rows are eliminated by increasing rank as far as
   ///        the entries permit. Empty: minimum degree order.
   /// \param go_on called after each step; if it returns `false`, the pattern remains incomplete
@@ -103,14 +111,30 @@ public:
   /// Frees the memory that only factorisations need. Solutions remain possible.
   void forget_places()
   {
-    place = std::vector<std::size_t>();
+    if (!subtrees.row.empty())
+      row = std::vector<std::uint32_t>();
+    matrix_entry = std::vector<Entry>();
+    first_matrix_entry = std::vector<std::size_t>();
     in_parent = std::vector<std::uint32_t>();
+  }
+
+  /// Rows below the supernodes, for solutions.
+  const std::vector<std::uint32_t>& rows_of_solutions() const
+  {
+    return subtrees.row.empty() ? row : subtrees.row;
   }
 
   std::size_t size() const { return new_of_old.size(); }
   std::size_t number_of_supernodes() const { return parent.size(); }
   std::size_t width(std::size_t s) const { return first[s + 1] - first[s]; }
   std::size_t number_of_rows_below(std::size_t s) const { return first_row[s + 1] - first_row[s]; }
+  /// Returns the index of the first value of a column of a panel, relative to that of the panel.
+  /// The column has the values of the rows after its own.
+  std::size_t first_of_column(std::size_t s, std::size_t column) const
+  {
+    const std::size_t height = width(s) + number_of_rows_below(s);
+    return column * (height - 1) - (column > 0 ? column * (column - 1) / 2 : 0);
+  }
   std::size_t number_of_values() const { return first_value.empty() ? 0 : first_value.back(); }
 
 private:
@@ -381,9 +405,8 @@ private:
     row.shrink_to_fit();
     first_value.assign(1, 0);
     for (std::size_t s = 0; s < m; ++s) {
-      const std::size_t values = (width(s) + number_of_rows_below(s)) * width(s);
-      largest_panel = std::max(largest_panel, values);
-      first_value.push_back(first_value.back() + values);
+      largest_panel = std::max(largest_panel, (width(s) + number_of_rows_below(s)) * width(s));
+      first_value.push_back(first_value.back() + first_of_column(s, width(s)));
     }
     in_parent.resize(row.size());
     for (std::size_t s = 0; s < m; ++s) {
@@ -420,24 +443,37 @@ private:
     std::vector<std::uint32_t> of_column(size());
     for (std::uint32_t s = 0; s < number_of_supernodes(); ++s)
       std::fill(of_column.begin() + first[s], of_column.begin() + first[s + 1], s);
-    place.reserve(static_cast<std::size_t>(a.nonZeros()));
-    for (Eigen::Index column = 0; column < a.outerSize(); ++column)
-      for (Matrix::InnerIterator entry(a, column); entry; ++entry) {
-        if (entry.row() < column)
-          continue;
-        std::uint32_t i = new_of_old[static_cast<std::size_t>(entry.row())];
-        std::uint32_t j = new_of_old[static_cast<std::size_t>(column)];
-        if (i < j)
-          std::swap(i, j);
-        const std::size_t s = of_column[j];
-        std::size_t r = i - first[s];
-        if (i >= first[s + 1]) {
-          const auto begin = row.begin() + static_cast<std::ptrdiff_t>(first_row[s]);
-          const auto end = row.begin() + static_cast<std::ptrdiff_t>(first_row[s + 1]);
-          r = width(s) + static_cast<std::size_t>(std::lower_bound(begin, end, i) - begin);
+    // Calls `use(supernode, row, column, index)`, with row and column in the order of elimination.
+    const auto for_each_entry = [&](const auto& use) {
+      std::uint32_t index = 0;
+      for (Eigen::Index column = 0; column < a.outerSize(); ++column)
+        for (Matrix::InnerIterator entry(a, column); entry; ++entry, ++index) {
+          if (entry.row() <= column)
+            continue;
+          const std::uint32_t i = new_of_old[static_cast<std::size_t>(entry.row())];
+          const std::uint32_t j = new_of_old[static_cast<std::size_t>(column)];
+          use(of_column[std::min(i, j)], std::max(i, j), std::min(i, j), index);
         }
-        place.push_back(first_value[s] + (j - first[s]) * (width(s) + number_of_rows_below(s)) + r);
+    };
+    first_matrix_entry.assign(number_of_supernodes() + 1, 0);
+    for_each_entry([&](std::uint32_t s, std::uint32_t, std::uint32_t, std::uint32_t) {
+      ++first_matrix_entry[s + 1];
+    });
+    std::partial_sum(first_matrix_entry.begin(),
+                     first_matrix_entry.end(),
+                     first_matrix_entry.begin());
+    matrix_entry.resize(first_matrix_entry.back());
+    std::vector<std::size_t> at(first_matrix_entry.begin(), first_matrix_entry.end() - 1);
+    for_each_entry([&](std::uint32_t s, std::uint32_t i, std::uint32_t j, std::uint32_t index) {
+      std::size_t r = i - first[s];
+      if (i >= first[s + 1]) {
+        const auto begin = row.begin() + static_cast<std::ptrdiff_t>(first_row[s]);
+        const auto end = row.begin() + static_cast<std::ptrdiff_t>(first_row[s + 1]);
+        r = width(s) + static_cast<std::size_t>(std::lower_bound(begin, end, i) - begin);
       }
+      const std::size_t place = (j - first[s]) * (width(s) + number_of_rows_below(s)) + r;
+      matrix_entry[at[s]++] = {static_cast<std::uint32_t>(place), index};
+    });
   }
 };
 

@@ -30,16 +30,19 @@ public:
     std::uint32_t begin, end; ///< supernodes of the subtree, the root last
     std::size_t first_place;  ///< index of the entries for the rows below the root
     std::size_t scratch;      ///< index of the temporary entries for the rows below one supernode
+    std::size_t first_above;  ///< index in `above` of the rows below the root
   };
 
   std::vector<Subtree> subtree;
   std::vector<std::uint32_t> top; ///< the other supernodes, increasing
-  /// Rows of the pattern, where rows above a subtree are replaced by its entries; may be empty.
+  /// Rows of the pattern, where rows above a subtree are replaced by its entries; empty if there
+  /// are no subtrees.
   std::vector<std::uint32_t> row;
+  std::vector<std::uint32_t> above; ///< the rows below the roots of all subtrees
   std::size_t number_of_places = 0; ///< size of the work array
 
   /// Smaller factors are solved faster without tasks. [values]
-  static constexpr std::size_t smallest_divided_factor = 500000;
+  static constexpr std::size_t smallest_divided_factor = 400000;
 
   /// \param pattern complete except for its subtrees
   template <class Pattern>
@@ -60,6 +63,10 @@ public:
       next = t.end;
       t.first_place = number_of_places;
       t.scratch = t.first_place + pattern.number_of_rows_below(t.end - 1);
+      t.first_above = above.size();
+      above.insert(above.end(),
+                   pattern.row.begin() + static_cast<std::ptrdiff_t>(pattern.first_row[t.end - 1]),
+                   pattern.row.begin() + static_cast<std::ptrdiff_t>(pattern.first_row[t.end]));
       number_of_places = t.scratch;
       for (std::size_t s = t.begin; s < t.end; ++s)
         number_of_places = std::max(number_of_places, t.scratch + pattern.number_of_rows_below(s));
@@ -93,7 +100,7 @@ private:
         --end; // its root belongs to `top`
         continue;
       }
-      subtree.push_back({begin[end - 1], static_cast<std::uint32_t>(end), 0, 0});
+      subtree.push_back({begin[end - 1], static_cast<std::uint32_t>(end), 0, 0, 0});
       end = begin[end - 1];
     }
     std::reverse(subtree.begin(), subtree.end());

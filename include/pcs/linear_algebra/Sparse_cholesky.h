@@ -9,6 +9,7 @@
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
 #include <pcs/linear_algebra/Cholesky_pattern.h>
+#include <pcs/linear_algebra/Factor_values.h>
 #include <pcs/linear_algebra/dense_front.h>
 
 #include <Eigen/Core>
@@ -38,8 +39,9 @@ public:
   using Matrix = Cholesky_pattern::Matrix;
 
   /*!
-    Factorises `a`, of which only the lower triangle is read. Rows are eliminated in the order of
-    `rank` unless it is empty. Returns `false` if `a` is not positive definite.
+    Factorises `a`, which is compressed, and of which only the lower triangle is read. Rows are
+    eliminated in the order of `rank` unless it is empty. Returns `false` if `a` is not positive
+    definite.
 
     \param row_sums the sum of each row of a Laplacian with added diagonal, at least 0. If given, no
         entry off the diagonal may be positive, and the diagonal is not read. The elimination then
@@ -57,34 +59,28 @@ public:
   /// Factorises a matrix with the sparsity pattern of `pattern`.
   /// \param go_on called about every `products_between_calls`; if it returns `false`, this
   ///        function does so, too, and the factor must not be used
+  /// \param value_size of the result; the factorisation itself has double precision. Fewer than
+  ///        eight bytes require row sums. Errors of solutions are then those of the values, times
+  ///        the condition number at most
   bool factorize(const Matrix& a,
                  std::shared_ptr<const Cholesky_pattern> pattern,
                  const std::vector<double>& row_sums = {},
-                 const pcs::internal::Go_on& go_on = {})
+                 const pcs::internal::Go_on& go_on = {},
+                 Value_size value_size = Value_size::eight)
   {
     m_pattern = std::move(pattern);
     const Cholesky_pattern& p = *m_pattern;
-    m_single = std::vector<float>();
-    m_value.clear();
-    m_value.reserve(p.number_of_values());
-    while (m_value.size() < p.number_of_values()) { // in parts, since new memory takes time
-      m_value.resize(std::min(p.number_of_values(), m_value.size() + values_between_calls), 0);
-      if (!pcs::internal::goes_on(go_on, 0))
-        return false;
-    }
+    if (!m_value.resize(p.number_of_values(), value_size, go_on))
+      return false;
     m_inverse_diagonal.resize(size());
     std::vector<double> diagonal(size(), 0);
-    std::size_t entry = 0;
-    for (Eigen::Index column = 0; column < a.outerSize(); ++column)
+    for (Eigen::Index column = 0; row_sums.empty() && column < a.outerSize(); ++column)
       for (Matrix::InnerIterator i(a, column); i; ++i)
-        if (i.row() >= column) {
-          m_value[p.place[entry++]] = i.value();
-          if (i.row() == column)
-            diagonal[p.new_of_old[static_cast<std::size_t>(column)]] = i.value();
-        }
+        if (i.row() == column)
+          diagonal[p.new_of_old[static_cast<std::size_t>(column)]] = i.value();
     for (std::size_t i = 0; i < row_sums.size(); ++i)
       diagonal[p.new_of_old[i]] = row_sums[i];
-    return factorize_panels(diagonal, !row_sums.empty(), go_on);
+    return factorize_panels(a.valuePtr(), diagonal, !row_sums.empty(), go_on);
   }
 
   /// The pattern of the last matrix; null before the first factorisation.
@@ -109,62 +105,76 @@ public:
   template <class ConcurrencyTag = CGAL::Sequential_tag, class Row>
   void solve(std::vector<Row>& b, std::vector<Row>& work) const
   {
-    if (m_single.empty())
-      solve_with<ConcurrencyTag>(m_value.data(), b, work);
-    else
-      solve_with<ConcurrencyTag>(m_single.data(), b, work);
+    solve_each<ConcurrencyTag>([&](std::size_t row) -> const Row& { return b[row]; },
+                               [&](std::size_t row, const Row& x) { b[row] = x; },
+                               work);
   }
 
-  /// Rounds the factor below the diagonal to single precision, which halves its memory. Solutions
-  /// are then accurate to about 1e-7 times the condition number. Ends with the next factorisation.
-  void round_to_single()
+  /// The same for the right-hand side `load(row)`. The solution is passed to `store(row, x)` after
+  /// all calls of `load`. Both are called concurrently if the tag allows it.
+  template <class ConcurrencyTag, class Row, class Load, class Store>
+  void solve_each(const Load& load, const Store& store, std::vector<Row>& work) const
   {
-    m_single.assign(m_value.begin(), m_value.end());
-    m_value = std::vector<double>();
+    work.resize(size_of_work());
+    pcs::internal::for_each_index<ConcurrencyTag>(
+        size(),
+        [&](std::size_t i) { work[place_of_row(i)] = load(i); },
+        512);
+    solve_placed<ConcurrencyTag>(work);
+    pcs::internal::for_each_index<ConcurrencyTag>(size(), [&](std::size_t i) {
+      store(i, work[place_of_row(i)]);
+    });
   }
+
+  /// The same for a right-hand side that is already in `work`, which has `size_of_work()` entries,
+  /// and where the solution replaces it. The entry of a row is `place_of_row(row)`.
+  template <class ConcurrencyTag, class Row>
+  void solve_placed(std::vector<Row>& work) const
+  {
+    m_value.visit([&](const auto& value) { solve_with<ConcurrencyTag>(value, work); });
+  }
+
+  std::size_t place_of_row(std::size_t row) const { return m_pattern->new_of_old[row]; }
+  std::size_t size_of_work() const { return m_pattern ? m_pattern->subtrees.number_of_places : 0; }
 
 private:
-  /// Number of values of the factor that are set to zero between two calls of `go_on`. [count]
-  static constexpr std::size_t values_between_calls = 10000000;
-
-  /// \param value of the panels
-  template <class ConcurrencyTag, class Value, class Row>
-  void solve_with(const Value* value, std::vector<Row>& b, std::vector<Row>& work) const
+  /// \param value see `Factor_values::visit()`
+  template <class ConcurrencyTag, class Values, class Row>
+  void solve_with(const Values& value, std::vector<Row>& work) const
   {
     if (size() == 0)
       return;
     const Cholesky_pattern& p = *m_pattern;
     const Elimination_subtrees& trees = p.subtrees;
+    const std::uint32_t* rows = p.rows_of_solutions().data();
+    const auto number_above = [&](const Elimination_subtrees::Subtree& t) {
+      return p.number_of_rows_below(t.end - 1);
+    };
     const auto for_each_subtree = [&](const auto& f) {
       pcs::internal::for_each_block<ConcurrencyTag>(
           trees.subtree.size(),
           1,
           [&](std::size_t t, std::size_t) { f(trees.subtree[t]); });
     };
-    work.resize(trees.number_of_places);
-    pcs::internal::for_each_index<ConcurrencyTag>(size(), [&](std::size_t i) {
-      work[p.new_of_old[i]] = b[i];
-    });
     for_each_subtree([&](const Elimination_subtrees::Subtree& t) {
       std::fill_n(work.begin() + static_cast<std::ptrdiff_t>(t.first_place),
-                  p.number_of_rows_below(t.end - 1),
+                  number_above(t),
                   Row(Row::Zero()));
       for (std::size_t s = t.begin; s < t.end; ++s)
-        solve_forward(value, s, trees.row.data(), work);
+        solve_forward(value, s, rows, work);
     });
     for (const auto& t : trees.subtree)
-      for (std::size_t r = p.first_row[t.end - 1], at = t.first_place; r < p.first_row[t.end]; ++r)
-        work[p.row[r]] += work[at++];
+      for (std::size_t k = 0; k < number_above(t); ++k)
+        work[trees.above[t.first_above + k]] += work[t.first_place + k];
     for (const auto s : trees.top)
-      solve_forward(value, s, p.row.data(), work);
+      solve_forward(value, s, rows, work);
     for (auto s = trees.top.rbegin(); s != trees.top.rend(); ++s)
-      solve_backward(value, *s, size(), work);
+      solve_backward(value, *s, rows, size(), work);
     for_each_subtree([&](const Elimination_subtrees::Subtree& t) {
+      for (std::size_t k = 0; k < number_above(t); ++k)
+        work[t.first_place + k] = work[trees.above[t.first_above + k]];
       for (std::size_t s = t.end; s-- > t.begin;)
-        solve_backward(value, s, t.scratch, work);
-    });
-    pcs::internal::for_each_index<ConcurrencyTag>(size(), [&](std::size_t i) {
-      b[i] = work[p.new_of_old[i]];
+        solve_backward(value, s, rows, t.scratch, work);
     });
   }
 
@@ -216,8 +226,10 @@ private:
   };
 
   /// Factorises panel by panel. A stack stores the updates of a panel until its parent is reached.
+  /// \param entries values of the matrix
   /// \param has_row_sums whether `diagonal` has the sums of the rows
-  bool factorize_panels(std::vector<double>& diagonal,
+  bool factorize_panels(const double* entries,
+                        std::vector<double>& diagonal,
                         bool has_row_sums,
                         const pcs::internal::Go_on& go_on)
   {
@@ -225,13 +237,16 @@ private:
     const std::function<bool()> ask = [&] { return work(); };
     const Cholesky_pattern& p = *m_pattern;
     const Factorize_front factorize_front = choose_factorize_front();
-    std::vector<double> stack(p.stack_size), scaled(p.largest_panel);
+    std::vector<double> stack(p.stack_size), dense(p.largest_panel), scaled(p.largest_panel);
     std::vector<double> diagonal_below(p.largest_number_of_rows_below);
     std::vector<Waiting> waiting;
     std::size_t top = 0;
     for (std::size_t s = 0; s < p.number_of_supernodes(); ++s) {
       const std::size_t width = p.width(s), below = p.number_of_rows_below(s);
-      const Dense_columns panel{m_value.data() + p.first_value[s], width + below};
+      const Dense_columns panel{dense.data(), width + below};
+      std::fill_n(panel.value, (width + below) * width, 0.0);
+      for (std::size_t e = p.first_matrix_entry[s]; e < p.first_matrix_entry[s + 1]; ++e)
+        panel.value[p.matrix_entry[e].place] = entries[p.matrix_entry[e].index];
       const Dense_columns rest{stack.data() + top, below};
       std::fill_n(rest.value, below * below, 0.0);
       auto first_child = waiting.end();
@@ -260,6 +275,9 @@ private:
         if (!std::isfinite(inverse))
           return false;
         m_inverse_diagonal[p.first[s] + c] = inverse;
+        m_value.set(p.first_value[s] + p.first_of_column(s, c),
+                    panel.at(c + 1, c),
+                    width + below - c - 1);
       }
       if (first_child != waiting.end()) {
         std::copy_n(rest.value, below * below, stack.data() + first_child->offset);
@@ -292,83 +310,91 @@ private:
   }
 
   /// \param rows indices in `work` of the rows below
-  template <class Row, class Value>
-  void solve_forward(const Value* value,
+  template <class Row, class Values>
+  void solve_forward(const Values& value,
                      std::size_t s,
                      const std::uint32_t* rows,
                      std::vector<Row>& work) const
   {
     const Cholesky_pattern& p = *m_pattern;
-    const std::size_t width = p.width(s), below = p.number_of_rows_below(s), height = width + below;
-    const Value* panel = value + p.first_value[s];
-    const auto at = [](const Value& v) { return static_cast<double>(v); };
+    const std::size_t width = p.width(s), below = p.number_of_rows_below(s);
     Row* own = work.data() + p.first[s];
-    for (std::size_t c = 0; c < width; ++c) {
+    std::size_t first = p.first_value[s]; // of the column; the next one begins after its rows
+    for (std::size_t c = 0; c < width; first += width + below - ++c) {
       const Row x = own[c];
+      const auto column = value.column(first);
       for (std::size_t r = c + 1; r < width; ++r)
-        own[r] -= at(panel[c * height + r]) * x;
+        own[r] -= column[r - c - 1] * x;
     }
     const std::uint32_t* row = rows + p.first_row[s];
-    panel += width;
+    // the values of the rows below: their distance from column to column decreases
+    const auto below_of = [&](std::size_t c) {
+      return value.column(p.first_value[s] + p.first_of_column(s, c) + width - c - 1);
+    };
     std::size_t c = 0;
-    for (; c + 3 <= width; c += 3, panel += 3 * height) {
+    for (; c + 3 <= width; c += 3) {
       const Row x = own[c], y = own[c + 1], z = own[c + 2];
+      const auto of_x = below_of(c), of_y = below_of(c + 1), of_z = below_of(c + 2);
       for (std::size_t r = 0; r < below; ++r)
-        work[row[r]] -=
-            at(panel[r]) * x + at(panel[height + r]) * y + at(panel[2 * height + r]) * z;
+        work[row[r]] -= of_x[r] * x + of_y[r] * y + of_z[r] * z;
     }
-    for (; c < width; ++c, panel += height) {
+    for (; c < width; ++c) {
       const Row x = own[c];
+      const auto of_x = below_of(c);
       for (std::size_t r = 0; r < below; ++r)
-        work[row[r]] -= at(panel[r]) * x;
+        work[row[r]] -= of_x[r] * x;
     }
     for (c = 0; c < width; ++c)
       own[c] *= m_inverse_diagonal[p.first[s] + c];
   }
 
-  /// \param scratch index in `work` of temporary entries for the rows below
-  template <class Row, class Value>
-  void solve_backward(const Value* value,
+  /// \param rows indices in `work` of the rows below
+  /// \param scratch index in `work` of temporary entries for them
+  template <class Row, class Values>
+  void solve_backward(const Values& value,
                       std::size_t s,
+                      const std::uint32_t* rows,
                       std::size_t scratch,
                       std::vector<Row>& work) const
   {
     const Cholesky_pattern& p = *m_pattern;
-    const std::size_t width = p.width(s), below = p.number_of_rows_below(s), height = width + below;
-    const Value* panel = value + p.first_value[s];
-    const auto at = [](const Value& v) { return static_cast<double>(v); };
-    const std::uint32_t* row = p.row.data() + p.first_row[s];
+    const std::size_t width = p.width(s), below = p.number_of_rows_below(s);
+    const std::uint32_t* row = rows + p.first_row[s];
     Row *own = work.data() + p.first[s], *gathered = work.data() + scratch;
     for (std::size_t r = 0; r < below; ++r)
       gathered[r] = work[row[r]];
-    const Value* column = panel + width;
+    const auto below_of = [&](std::size_t c) {
+      return value.column(p.first_value[s] + p.first_of_column(s, c) + width - c - 1);
+    };
     std::size_t c = 0;
-    for (; c + 2 <= width; c += 2, column += 2 * height) {
+    for (; c + 2 <= width; c += 2) {
       Row sum = own[c], next = own[c + 1];
+      const auto of_sum = below_of(c), of_next = below_of(c + 1);
       for (std::size_t r = 0; r < below; ++r) {
-        sum -= at(column[r]) * gathered[r];
-        next -= at(column[height + r]) * gathered[r];
+        sum -= of_sum[r] * gathered[r];
+        next -= of_next[r] * gathered[r];
       }
       own[c] = sum;
       own[c + 1] = next;
     }
     if (c < width) {
       Row sum = own[c];
+      const auto of_sum = below_of(c);
       for (std::size_t r = 0; r < below; ++r)
-        sum -= at(column[r]) * gathered[r];
+        sum -= of_sum[r] * gathered[r];
       own[c] = sum;
     }
     for (c = width; c-- > 0;) {
       Row sum = own[c];
+      const auto column = value.column(p.first_value[s] + p.first_of_column(s, c));
       for (std::size_t r = c + 1; r < width; ++r)
-        sum -= at(panel[c * height + r]) * own[r];
+        sum -= column[r - c - 1] * own[r];
       own[c] = sum;
     }
   }
 
   std::shared_ptr<const Cholesky_pattern> m_pattern;
-  std::vector<double> m_value; ///< values of the panels
-  std::vector<float> m_single; ///< the same after `round_to_single()`
+  Factor_values m_value;
   std::vector<double> m_inverse_diagonal;
 };
 

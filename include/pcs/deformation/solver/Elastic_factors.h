@@ -22,9 +22,9 @@
 namespace pcs {
 namespace deformation {
 
-/// Number of unknowns up to which all factors have double precision. Above, that of the smoothing,
-/// which is a regularisation, has single precision below the diagonal; this changes positions by
-/// less than 1e-8 of the extent. [count]
+/// Number of unknowns up to which all factors have double precision. Above, entries below the
+/// diagonal have relative errors of 1e-13 or, for the smoothing, which is a regularisation, of
+/// 1e-6; this changes positions by less than 1e-6 of the extent. [count]
 constexpr std::size_t most_exact_rows = 65536;
 
 /// Systems with fewer unknowns are factorised in milliseconds, without calls of the callback, so
@@ -45,14 +45,17 @@ public:
   double fit_weight(std::size_t row) const { return m_fit_weight[row]; }
 
   /// Returns `false` if a matrix is singular (a free component without handle), or if `go_on` does.
-  /// The factors must not be used then.
+  /// The factors must not be used then. \param is_exact whether a small network has factors in
+  /// double precision
   template <class ConcurrencyTag>
   bool factorize(const Elastic_network& network,
                  const Node_constraints& constraints,
                  double stiffness,
-                 const pcs::internal::Go_on& go_on = {})
+                 const pcs::internal::Go_on& go_on = {},
+                 bool is_exact = true)
   {
     m_rows = Free_rows(constraints);
+    m_is_exact = is_exact && m_rows.size() <= most_exact_rows;
     const bool is_watched = go_on && m_rows.size() >= least_watched_rows;
     const pcs::internal::Go_on asks = is_watched ? go_on : pcs::internal::Go_on();
     m_has_links = !network.links.neighbor.empty();
@@ -138,25 +141,23 @@ private:
                          const pcs::internal::Go_on& asks)
   {
     bool field_ok = false, smoothing_ok = false;
-    const auto factorize_field = [&] {
-      field_ok = m_field.factorize(a, pattern, field_sums(), pcs::internal::part_of(asks, 0.6, 1));
-    };
-    const auto factorize_smoothing = [&] {
-      smoothing_ok = m_smoothing.factorize(a,
-                                           pattern,
-                                           smoothing_sums(),
-                                           pcs::internal::part_of(asks, 0.2, 0.6));
-    };
-    if (m_rows.size() <= most_exact_rows)
-      invoke_both<ConcurrencyTag>(asks, factorize_field, factorize_smoothing);
-    else { // one after the other, so that only one of them has double precision at a time
-      m_field = linear_algebra::Sparse_cholesky();
-      factorize_smoothing();
-      if (!smoothing_ok)
-        return false;
-      m_smoothing.round_to_single();
-      factorize_field();
-    }
+    using linear_algebra::Value_size;
+    invoke_both<ConcurrencyTag>(
+        asks,
+        [&] {
+          field_ok = m_field.factorize(a,
+                                       pattern,
+                                       field_sums(),
+                                       pcs::internal::part_of(asks, 0.6, 1),
+                                       m_is_exact ? Value_size::eight : Value_size::six);
+        },
+        [&] {
+          smoothing_ok = m_smoothing.factorize(a,
+                                               pattern,
+                                               smoothing_sums(),
+                                               pcs::internal::part_of(asks, 0.2, 0.6),
+                                               m_is_exact ? Value_size::eight : Value_size::three);
+        });
     return field_ok && smoothing_ok;
   }
 
@@ -165,8 +166,13 @@ private:
                        const std::vector<double>& row_sums,
                        const pcs::internal::Go_on& go_on)
   {
-    const auto pattern = std::make_shared<const linear_algebra::Cholesky_pattern>(a, rank, go_on);
-    return pattern->is_complete() && m_link.factorize(a, pattern, row_sums, go_on);
+    const auto pattern = std::make_shared<linear_algebra::Cholesky_pattern>(a, rank, go_on);
+    const auto value_size =
+        m_is_exact ? linear_algebra::Value_size::eight : linear_algebra::Value_size::six;
+    if (!pattern->is_complete() || !m_link.factorize(a, pattern, row_sums, go_on, value_size))
+      return false;
+    pattern->forget_places();
+    return true;
   }
 
   /// Returns the area of a node in units of a node of the reference network.
@@ -179,7 +185,7 @@ private:
   Free_rows m_rows;
   linear_algebra::Sparse_cholesky m_field, m_link, m_smoothing;
   std::vector<double> m_fit_weight; ///< of each row, multiplied by its degree
-  bool m_has_links = false;
+  bool m_has_links = false, m_is_exact = true;
 };
 
 } // namespace deformation
