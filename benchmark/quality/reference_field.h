@@ -48,16 +48,16 @@ public:
                                                            std::vector<double>()));
     // Harmonic weights, from 0 at the first handle to 1 at the second.
     m_share.assign(c.points.size(), Vec1::Zero());
-    std::vector<Vec1> rhs, work;
+    std::vector<Vec1> work;
     const auto value = [&](std::size_t i) { return Vec1(double(m_constraints.handle_of_node[i])); };
-    deformation::solve_harmonic<CGAL::Sequential_tag>(m_factor,
-                                                      m_graph,
-                                                      m_constraints,
-                                                      m_rows,
-                                                      value,
-                                                      rhs,
-                                                      work,
-                                                      m_share);
+    deformation::solve_harmonic<CGAL::Sequential_tag>(
+        m_factor,
+        m_graph,
+        m_constraints,
+        m_rows,
+        value,
+        [&](std::size_t i, const Vec1& share) { m_share[i] = share; },
+        work);
     for (std::size_t i = 0; i < m_share.size(); ++i)
       if (m_constraints.is_prescribed(i))
         m_share[i] = value(i);
@@ -67,8 +67,8 @@ public:
   {
     std::vector<pcs::Quaternion> field;
     pcs::deformation::Rotation_field_solver<CGAL::Sequential_tag> solver;
-    pcs::deformation::Solve_memory memory;
-    solver(kind, m_factor, m_graph, m_constraints, m_rows, m_case.transforms, field, memory);
+    std::vector<Vec3> work;
+    solver(kind, m_factor, m_graph, m_constraints, m_rows, m_case.transforms, field, work);
     return field;
   }
 

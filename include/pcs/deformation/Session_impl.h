@@ -81,7 +81,7 @@ std::size_t Session<ConcurrencyTag>::number_of_points() const
 template <class ConcurrencyTag>
 std::size_t Session<ConcurrencyTag>::number_of_samples() const
 {
-  return m_state->is_ready ? m_state->body.network.size() : 0;
+  return m_state->is_ready ? m_state->body.number_of_samples() : 0;
 }
 
 template <class ConcurrencyTag>
@@ -151,6 +151,7 @@ Status Session<ConcurrencyTag>::constrain(double stiffness, pcs::internal::Progr
   internal::Sites_guard<ConcurrencyTag> guard(s);
   s.stiffness = stiffness;
   s.setting_of_sites = s.setting;
+  restore_borders(s.body.network, s.cut);
   Body_constraints found = constrain_body(s.body, s.border_finder, s.handles, s.sites, s.report);
   pcs::internal::Shared_progress shared(progress);
   const pcs::internal::Go_on go_on = [&shared](double f) { return shared(f); };
@@ -334,7 +335,7 @@ Vec3 Session<ConcurrencyTag>::rest_position(std::size_t i) const
 {
   const Session_state<ConcurrencyTag>& s = *m_state;
   return s.rest_positions(i, [&] {
-    return s.body.frame.to_world(s.body.rest_points.position(s.body.place_of_input(i)));
+    return s.body.frame.to_world(s.body.rest_of_place(s.body.place_of_input(i)));
   });
 }
 
@@ -359,7 +360,7 @@ double Session<ConcurrencyTag>::energy_of_sample(std::size_t sample) const
   if (s.is_at_rest || s.sites[s.body.site_of_sample[sample]] == unreached_node)
     return 0;
   const double unit = s.body.frame.unit;
-  return s.solver.state().energy_of_node(sample, s.body.network.size()) * unit * unit;
+  return s.solver.state().energy_of_node(sample, s.body.number_of_samples()) * unit * unit;
 }
 
 template <class ConcurrencyTag>

@@ -139,15 +139,22 @@ void carry_with_samples(const Session_state<Tag>& s,
 }
 
 template <class Tag>
+std::vector<Vec3> rest_of_samples(const Session_state<Tag>& s)
+{
+  const std::vector<Vec3>& rest = s.body.network.rest;
+  return {rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(s.body.number_of_samples())};
+}
+
+template <class Tag>
 void build_carrier(Session_state<Tag>& s)
 {
   std::vector<Vec3> sites(s.body.number_of_sites());
   for (std::size_t place = 0; place < s.body.number_of_points(); ++place)
-    sites[s.body.site_of_place[place]] = s.body.rest_points.position(place);
+    sites[s.body.site_of_place[place]] = s.body.rest_of_place(place);
   s.carrier = std::make_unique<Point_carrier>(std::move(sites),
-                                              s.body.network.rest,
+                                              rest_of_samples(s),
                                               s.body.sample_of_site,
-                                              s.body.network.surface,
+                                              uncut_surface(s.body.network, s.cut),
                                               s.body.options.number_of_sample_neighbors,
                                               s.body.options.sample_weights);
 }

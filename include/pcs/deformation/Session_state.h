@@ -53,8 +53,10 @@ struct Session_state
   // ---- constraints of these handles; a cancelled factorisation leaves the sites and fades, and no
   // ---- factors; a cancelled solve does not change them
   Site_constraints sites;
-  Elastic_network
-      network; ///< the samples and the nodes on the borders of handles, if there are any
+  /// The samples and the nodes on the borders of handles. Without sampling, these nodes are added
+  /// to `body.network`, and `cut` has the edges that are missing there.
+  Elastic_network network;
+  Cut_edges cut;
   Node_constraints of_samples;
   Elastic_solver<ConcurrencyTag> solver;
   Handle_fades fades;
@@ -140,8 +142,8 @@ constexpr std::size_t most_next_maps = 65536;
 template <class Tag>
 void start_maps(Session_state<Tag>& s)
 {
-  if (s.body.network.size() <= most_next_maps)
-    s.maps.assign(s.body.network.size(), identity_map());
+  if (s.body.number_of_samples() <= most_next_maps)
+    s.maps.assign(s.body.number_of_samples(), identity_map());
   else
     s.maps = std::vector<Affine_map>();
 }
@@ -151,7 +153,7 @@ template <class Tag>
 void complete_maps(Session_state<Tag>& s)
 {
   if (s.maps.empty())
-    s.maps.assign(s.body.network.size(), identity_map());
+    s.maps.assign(s.body.number_of_samples(), identity_map());
 }
 
 template <class Tag>

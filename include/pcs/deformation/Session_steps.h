@@ -50,7 +50,7 @@ void describe_body(Session_state<Tag>& s)
   const Sampled_body<Tag>& body = s.body;
   s.report.number_of_points = body.number_of_points();
   s.report.number_of_duplicates = body.number_of_points() - body.number_of_sites();
-  s.report.number_of_samples = body.network.size();
+  s.report.number_of_samples = body.number_of_samples();
   s.report.sample_choice = body.sample_choice;
   s.report.number_of_interior_links = body.network.links.neighbor.size() / 2;
   s.report.number_of_components = body.number_of_components();
@@ -83,6 +83,20 @@ void prepare_samples(Session_state<Tag>& s, const pcs::internal::Go_on& go_on)
 
 // ---- constraints
 
+/// Returns the network of the constraints. Without sampling, changes that of the body.
+template <class Tag>
+const Elastic_network& take_network(Session_state<Tag>& s, Body_constraints& found)
+{
+  if (s.body.is_sampled) {
+    s.network = std::move(found.network);
+    return s.network;
+  }
+  if (straighten_borders(s.body.network, found.of_nodes, s.cut))
+    for (std::uint32_t& source : s.body.network.source)
+      source = s.body.site_of_sample[source];
+  return s.body.network;
+}
+
 /// Factorises the network of the finest level and, meanwhile, finds the points near handles.
 /// Returns `false` if a matrix is singular, or if `go_on` does.
 template <class Tag>
@@ -90,9 +104,7 @@ bool constrain_finest(Session_state<Tag>& s,
                       Body_constraints found,
                       const pcs::internal::Go_on& go_on)
 {
-  if (found.has_network)
-    s.network = std::move(found.network);
-  const Elastic_network& network = found.has_network ? s.network : s.body.network;
+  const Elastic_network& network = take_network(s, found);
   bool is_regular = false;
   const auto factorize = [&] {
     is_regular = s.solver.constrain(network, std::move(found.of_nodes), s.stiffness, go_on);
@@ -120,7 +132,7 @@ void set_node_targets(Session_state<Tag>& s)
   nodes.clear();
   if (!s.next_targets.empty()) {
     const std::vector<Similarity>& t = s.next_transforms;
-    const std::size_t number_of_samples = s.body.network.size();
+    const std::size_t number_of_samples = s.body.number_of_samples();
     nodes.assign(number_of_samples);
     s.next_targets.set_samples(s.body, s.of_samples, s.handles, t, nodes);
     s.coarse.set_targets(s.of_samples, nodes);
@@ -175,12 +187,12 @@ Elastic_result solve_levels(Session_state<Tag>& s,
                             const Elastic_options& options,
                             pcs::internal::Progress& progress)
 {
-  const Deviation_guess* guess = nullptr;
+  Deviation_guess* guess = nullptr;
   {
     const pcs::internal::Stage_timer timer(s.report.seconds.coarse_levels);
     guess = &s.coarse.solve(s.next_transforms, options, progress);
   }
-  const Elastic_result result = s.solver.solve(s.next_transforms, options, progress, *guess);
+  const Elastic_result result = s.solver.solve(s.next_transforms, options, progress, guess);
   s.coarse.forget_large_guess();
   return result;
 }
@@ -227,6 +239,7 @@ bool take_shape(Session_state<Tag>& s)
                       s.next_transforms,
                       std::as_const(s.solver).targets(),
                       s.body.network.rest,
+                      s.body.number_of_samples(),
                       s.maps,
                       s.next_maps,
                       s.are_finite))
@@ -282,14 +295,25 @@ template <class Tag>
 void move_rest(Session_state<Tag>& s, const std::function<Vec3(std::size_t)>& position)
 {
   Sampled_body<Tag>& body = s.body;
-  body.rest_points.set_positions(
-      [&](std::size_t place) { return body.frame.to_local(position(body.input_of_place[place])); });
+  const auto local = [&](std::size_t place) {
+    return body.frame.to_local(position(body.input_of_place[place]));
+  };
+  const auto is_apart = [&](std::size_t place) {
+    return local(place) != local(body.first_place(body.site_of_place[place]));
+  };
+  bool has_positions = body.is_sampled;
+  for (std::size_t place = 0; !has_positions && place < body.number_of_points(); ++place)
+    has_positions = is_apart(place);
+  if (has_positions)
+    body.rest_points.set_positions(local);
+  else
+    body.rest_points.forget_positions();
+  for (std::size_t sample = 0; sample < body.number_of_samples(); ++sample)
+    body.network.rest[sample] = local(body.first_place(body.site_of_sample[sample]));
   std::vector<Vec3> points(body.number_of_points());
   for (std::size_t i = 0; i < points.size(); ++i)
     points[i] = position(i);
   s.rest_positions.keep(body.frame, std::move(points));
-  for (std::size_t sample = 0; sample < body.network.size(); ++sample)
-    body.network.rest[sample] = body.rest_of_site(body.site_of_sample[sample]);
   s.coarse.accept(body.network);
   s.carrier.reset();
 }

@@ -71,16 +71,15 @@ double linear_error(const Elastic_network& network, const Node_constraints& cons
   const pcs_test::Harmonic system(network.surface, constraints);
   BOOST_REQUIRE(system.is_ok);
   using Row = Eigen::Matrix<double, 1, 1>;
-  std::vector<Row> rhs, work, u(network.size(), Row::Zero());
+  std::vector<Row> work, u(network.size(), Row::Zero());
   solve_harmonic<CGAL::Sequential_tag>(
       system.factor,
       network.surface,
       constraints,
       system.rows,
       [&](std::size_t i) { return Row(constraints.handle_of_node[i] == 0 ? 3 : 37); },
-      rhs,
-      work,
-      u);
+      [&](std::size_t i, const Row& value) { u[i] = value; },
+      work);
   double largest = 0;
   for (const auto i : system.rows.node_of_row)
     largest = std::max(largest, std::abs(u[i][0] - network.rest[i].x()));

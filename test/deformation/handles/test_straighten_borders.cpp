@@ -17,6 +17,7 @@ namespace test_straighten_borders {
 
 namespace {
 
+using pcs::deformation::Cut_edges;
 using pcs::deformation::Elastic_network;
 using pcs::deformation::Node_constraints;
 using pcs_test::Points;
@@ -56,23 +57,27 @@ BOOST_AUTO_TEST_CASE(on_a_grid_the_border_stays)
 {
   const Elastic_network network = jittered_plate(0);
   Node_constraints constraints = hold(network.rest, 10);
-  Elastic_network result;
-  pcs::deformation::straighten_borders(network, constraints, result);
+  Elastic_network result = network;
+  Cut_edges cut;
+  pcs::deformation::straighten_borders(result, constraints, cut);
   for (std::size_t b = network.size(); b < result.size(); ++b) // only at the ends of the plate
     BOOST_TEST((result.rest[b].y() < 1.5 || result.rest[b].y() > 27.5));
   constraints = hold(network.rest, 100);
-  Elastic_network untouched;
-  BOOST_TEST(!pcs::deformation::straighten_borders(network, constraints, untouched));
+  Elastic_network untouched = network;
+  Cut_edges none;
+  BOOST_TEST(!pcs::deformation::straighten_borders(untouched, constraints, none));
+  BOOST_TEST(none.empty());
+  BOOST_TEST((untouched.surface.neighbor == network.surface.neighbor));
   BOOST_TEST(constraints.handle_of_node.size() == network.size());
-  BOOST_TEST(untouched.size() == 0u);
+  BOOST_TEST(untouched.size() == network.size());
 }
 
 BOOST_AUTO_TEST_CASE(soft_handles_have_no_border)
 {
-  const Elastic_network network = jittered_plate(0.4);
+  Elastic_network network = jittered_plate(0.4);
   Node_constraints constraints = hold(network.rest, 10.5, true);
-  Elastic_network result;
-  BOOST_TEST(!pcs::deformation::straighten_borders(network, constraints, result));
+  Cut_edges cut;
+  BOOST_TEST(!pcs::deformation::straighten_borders(network, constraints, cut));
 }
 
 BOOST_AUTO_TEST_CASE(the_border_runs_along_the_outermost_points)
@@ -81,8 +86,9 @@ BOOST_AUTO_TEST_CASE(the_border_runs_along_the_outermost_points)
   const double limit = 10.2;
   Node_constraints constraints = hold(network.rest, limit);
   const Node_constraints before = constraints;
-  Elastic_network result;
-  BOOST_TEST_REQUIRE(pcs::deformation::straighten_borders(network, constraints, result));
+  Elastic_network result = network;
+  Cut_edges cut;
+  BOOST_TEST_REQUIRE(pcs::deformation::straighten_borders(result, constraints, cut));
   const std::size_t n = network.size();
   BOOST_TEST_REQUIRE(result.size() > n);
   BOOST_TEST_REQUIRE(constraints.handle_of_node.size() == result.size());
@@ -112,8 +118,9 @@ BOOST_AUTO_TEST_CASE(edges_keep_their_slope_and_stay_symmetric)
 {
   const Elastic_network network = jittered_plate(0.4);
   Node_constraints constraints = hold(network.rest, 10.2);
-  Elastic_network result;
-  BOOST_TEST_REQUIRE(pcs::deformation::straighten_borders(network, constraints, result));
+  Elastic_network result = network;
+  Cut_edges cut;
+  BOOST_TEST_REQUIRE(pcs::deformation::straighten_borders(result, constraints, cut));
   for (std::uint32_t i = 0; i < result.size(); ++i)
     for (std::size_t e = result.surface.first[i]; e < result.surface.first[i + 1]; ++e) {
       const std::uint32_t j = result.surface.neighbor[e];
@@ -139,6 +146,34 @@ BOOST_AUTO_TEST_CASE(edges_keep_their_slope_and_stay_symmetric)
                                        1) < 1e-9);
     }
     BOOST_TEST(is_found);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(cuts_are_reversed)
+{
+  const Elastic_network network = jittered_plate(0.4);
+  Elastic_network result = network;
+  Cut_edges cut;
+  for (const double limit : {10.2, 15.3, 28.4}) {
+    Node_constraints constraints = hold(network.rest, limit);
+    for (std::size_t i = 0; i < network.size(); ++i)
+      if (network.rest[i].y() > limit)
+        constraints.handle_of_node[i] = 0;
+    BOOST_TEST_REQUIRE(pcs::deformation::straighten_borders(result, constraints, cut));
+    BOOST_TEST(!cut.empty());
+    BOOST_TEST(result.source.size() == result.size() - network.size());
+    BOOST_TEST(result.surface.neighbor.size() == network.surface.neighbor.size());
+    const auto uncut = pcs::deformation::uncut_surface(result, cut);
+    pcs::deformation::restore_borders(result, cut);
+    BOOST_TEST(cut.empty());
+    const pcs::deformation::Weighted_graph* const surfaces[] = {&uncut, &result.surface};
+    for (const auto* surface : surfaces) {
+      BOOST_TEST((surface->first == network.surface.first));
+      BOOST_TEST((surface->neighbor == network.surface.neighbor));
+      BOOST_TEST((surface->weight == network.surface.weight));
+    }
+    BOOST_TEST((result.rest == network.rest));
+    BOOST_TEST(result.source.empty());
   }
 }
 

@@ -26,7 +26,7 @@ std::vector<Vec3> solve(const pcs::deformation::Weighted_graph& graph,
 {
   const pcs_test::Harmonic system(graph, constraints);
   BOOST_REQUIRE(system.is_ok);
-  std::vector<Vec3> rhs, work, result(graph.size(), Vec3::Zero());
+  std::vector<Vec3> work, result(graph.size(), Vec3::Zero());
   pcs::deformation::solve_harmonic<CGAL::Sequential_tag>(
       system.factor,
       graph,
@@ -35,9 +35,8 @@ std::vector<Vec3> solve(const pcs::deformation::Weighted_graph& graph,
       [&](std::size_t i) {
         return value_of_handle[static_cast<std::size_t>(constraints.handle_of_node[i])];
       },
-      rhs,
-      work,
-      result);
+      [&](std::size_t i, const Vec3& u) { result[i] = u; },
+      work);
   return result;
 }
 

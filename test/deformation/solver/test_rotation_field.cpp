@@ -33,7 +33,7 @@ std::vector<Quaternion> field(Rotation_field kind,
   const pcs_test::Harmonic system(graph, constraints);
   BOOST_REQUIRE(system.is_ok);
   std::vector<Quaternion> result;
-  pcs::deformation::Solve_memory memory;
+  std::vector<Vec3> work;
   pcs::deformation::Rotation_field_solver<CGAL::Sequential_tag>()(kind,
                                                                   system.factor,
                                                                   graph,
@@ -41,7 +41,7 @@ std::vector<Quaternion> field(Rotation_field kind,
                                                                   system.rows,
                                                                   transforms,
                                                                   result,
-                                                                  memory);
+                                                                  work);
   for (const auto& q : result)
     BOOST_REQUIRE(std::abs(q.norm() - 1) < 1e-12);
   return result;

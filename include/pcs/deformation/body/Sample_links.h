@@ -92,7 +92,7 @@ inline void write_links(const std::vector<Sample_candidate>& nearest,
 /// Returns for every sample, in increasing order, the sample itself and the samples in the two
 /// rings of regions that touch its region.
 template <class ConcurrencyTag>
-std::vector<std::vector<std::uint32_t>> sample_rings(const Weighted_graph& graph)
+std::vector<std::vector<std::uint32_t>> sample_rings(const neighborhood::Proximity_graph& graph)
 {
   std::vector<std::vector<std::uint32_t>> rings(graph.size());
   pcs::internal::for_each_index<ConcurrencyTag>(

@@ -50,9 +50,12 @@ struct Sampled_body
   std::vector<std::uint32_t> sample_of_site;
   /// The graph of the sites, kept for the borders of handles; empty if all sites are samples.
   neighborhood::Proximity_graph site_graph;
-  Elastic_network network;                     ///< its nodes are the samples
-  double weight_unit = 1;                      ///< see `sample_graph()`
-  Point_blocks rest_points;                    ///< the points at rest, by upsampling index
+  /// Its first nodes are the samples; without sampling, more may follow (`straighten_borders()`).
+  Elastic_network network;
+  double weight_unit = 1; ///< see `sample_graph()`
+  /// The points at rest, by upsampling index. Without sampling, it has positions only if points at
+  /// the same position were moved apart before `accept()`; see `rest_of_place()`.
+  Point_blocks rest_points;
   Sample_links links_of_site;                  ///< kept until the upsampling is built from them
   std::size_t number_of_short_cuts = 0;        ///< links removed between sheets
   bool has_fragments = false;                  ///< whether there are sites without a sample
@@ -62,6 +65,7 @@ struct Sampled_body
 
   std::size_t number_of_points() const { return input_of_place.size(); }
   std::size_t number_of_sites() const { return component_of_site.size(); }
+  std::size_t number_of_samples() const { return site_of_sample.size(); }
   std::size_t number_of_components() const { return component_size.size(); }
   std::size_t first_place(std::size_t site) const
   {
@@ -77,7 +81,17 @@ struct Sampled_body
       ++place;
     return place;
   }
-  Vec3 rest_of_site(std::size_t site) const { return rest_points.position(first_place(site)); }
+  /// Returns a position at rest by upsampling index, in local coordinates.
+  Vec3 rest_of_place(std::size_t place) const
+  {
+    return rest_points.has_positions() ? rest_points.position(place)
+                                       : network.rest[site_of_place[place]];
+  }
+  Vec3 rest_of_site(std::size_t site) const
+  {
+    return rest_points.has_positions() ? rest_points.position(first_place(site))
+                                       : network.rest[site];
+  }
 
   std::vector<std::uint32_t> component_of_sample() const;
 

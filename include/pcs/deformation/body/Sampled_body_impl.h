@@ -359,7 +359,8 @@ bool Sampled_body<ConcurrencyTag>::sample(const std::vector<Vec3>& sites,
     return false;
   link_interior(component_of_sample());
   const auto rest = [&](std::size_t place) { return sites[site_of_place[place]]; };
-  rest_points = Point_blocks::of<ConcurrencyTag>(number_of_points(), rest);
+  rest_points = is_sampled ? Point_blocks::of<ConcurrencyTag>(number_of_points(), rest)
+                           : Point_blocks(number_of_points());
   return progress(1);
 }
 

@@ -85,7 +85,7 @@ private:
     Node_constraints constraints;
     constraints.softness_weight = handles.softness_weights();
     auto& of_sample = constraints.handle_of_node;
-    of_sample.assign(body.network.size(), free_node);
+    of_sample.assign(body.number_of_samples(), free_node);
     std::set<std::pair<Node_constraint, std::uint32_t>> has_sample; // handle and component
     for (std::size_t s = 0; s < of_sample.size(); ++s) {
       const std::size_t site = body.site_of_sample[s];

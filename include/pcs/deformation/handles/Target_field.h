@@ -88,7 +88,7 @@ public:
     for (std::size_t h = 0; h < targets.size(); ++h)
       if (points[h] && targets[h]) {
         m_index.resize(body.number_of_sites(), none);
-        slot.resize(body.network.size(), none);
+        slot.resize(body.number_of_samples(), none);
         add_handle(body,
                    static_cast<Node_constraint>(h),
                    points[h]->sites,
@@ -109,7 +109,7 @@ public:
                    const std::vector<Similarity>& transforms,
                    Node_targets& nodes) const
   {
-    for (std::size_t s = 0; s < body.network.size(); ++s) {
+    for (std::size_t s = 0; s < body.number_of_samples(); ++s) {
       const Node_constraint h = constraints.handle_of_node[s];
       if (h < 0)
         continue;
@@ -215,11 +215,12 @@ private:
                          std::size_t first,
                          const Use& use) const
   {
-    // Without samples, the graph of the sites is that of the network.
+    // Without samples, the graph of the sites is that of the network, perhaps with further nodes,
+    // and without edges out of the handle.
     const neighborhood::Proximity_graph& graph =
         body.is_sampled ? body.site_graph : body.network.surface;
     for (auto j = graph.begin(site); j != graph.end(site); ++j)
-      if (m_index[*j] != none && m_index[*j] >= first)
+      if (*j < m_index.size() && m_index[*j] != none && m_index[*j] >= first)
         use(*j, m_index[*j]);
   }
 

@@ -27,9 +27,8 @@ namespace deformation {
 struct Body_constraints
 {
   Node_constraints of_samples; ///< at least one sample is held in each component with a handle
-  Node_constraints of_nodes;   ///< of `network` if it exists, otherwise of the samples
+  Node_constraints of_nodes;   ///< of `network` if the body is sampled, otherwise of the samples
   Elastic_network network;     ///< the samples, with nodes on the borders of exact handles
-  bool has_network = false;
   std::vector<Border_edge> border; ///< edges out of exact handles, if the body is sampled
 };
 
@@ -83,8 +82,8 @@ void add_border_nodes(const Sampled_body<ConcurrencyTag>& body,
 
 } // namespace internal
 
-/// Classifies the sites and finds the held nodes: samples of handles, nodes on the borders of exact
-/// handles, and nodes in components that would otherwise be free.
+/// Classifies the sites and finds the held nodes: samples of handles, nodes in components that
+/// would otherwise be free and, if the body is sampled, nodes on the borders of exact handles.
 template <class ConcurrencyTag>
 Body_constraints constrain_body(const Sampled_body<ConcurrencyTag>& body,
                                 const Border_finder& border_finder,
@@ -96,14 +95,8 @@ Body_constraints constrain_body(const Sampled_body<ConcurrencyTag>& body,
   Body_constraints result;
   result.of_samples = result.of_nodes = sites.find(body, handles, report);
   internal::anchor_samples(body, handle_of_site, result.of_samples);
-  result.has_network = true;
   if (body.is_sampled)
     internal::add_border_nodes(body, border_finder, handles, handle_of_site, result);
-  else {
-    result.has_network = straighten_borders(body.network, result.of_nodes, result.network);
-    for (std::uint32_t& source : result.network.source)
-      source = body.site_of_sample[source];
-  }
   return result;
 }
 

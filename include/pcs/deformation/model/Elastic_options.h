@@ -9,6 +9,8 @@
 #include <pcs/core/Status.h>
 #include <pcs/deformation/model/Elastic_network.h>
 
+#include <cstddef>
+#include <functional>
 #include <vector>
 
 namespace pcs {
@@ -92,9 +94,11 @@ struct Deviation_guess
   std::vector<Vec3> deviations; ///< empty if the guess was discarded
   bool is_far_from_field =
       false; ///< clearly better than the field on the coarser network; accepted untested
-  std::vector<Vec3>
-      /// offsets of positions by the interior links of coarser networks; may be empty
-      link_offsets;
+  /// Offsets of positions by the interior links of coarser networks, for nodes of the coarser
+  /// network; may be empty.
+  std::vector<Vec3> link_offsets;
+  /// The offset of a node of this network, interpolated from these; empty if there are none.
+  std::function<Vec3(std::size_t)> link_offset;
 };
 
 } // namespace deformation

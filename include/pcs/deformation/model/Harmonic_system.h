@@ -109,12 +109,6 @@ inline double node_degree(const Weighted_graph& graph, std::size_t i)
 /// network takes so long that its memory is freed. [count]
 constexpr std::size_t most_kept_nodes = 65536;
 
-/// Right-hand sides and work vectors for the solves of one network. One solve at a time uses them.
-struct Solve_memory
-{
-  std::vector<Vec3> rhs, work;
-};
-
 /*!
   Minimises the Dirichlet energy
 
@@ -124,21 +118,20 @@ struct Solve_memory
   of the graph [-], `s_i` is `Node_constraints::soft_weight()`. The normal equations are `L u = 0`
   at free nodes and `(L u)_i + s_i (u_i - value_i) = 0` at soft ones, with constraints as
   in equation (2.3) of [Aiteanu 2022]. `factor` is the factor of `L` without the prescribed nodes,
-  with the `s_i` added on its diagonal. `value(node)` is called for prescribed and soft nodes.
-  `result[node]` is written for the unknown nodes only.
+  with the `s_i` added on its diagonal. `value(node)` is called for prescribed and soft nodes, and
+  then `store(node, u)` for the unknown nodes, both concurrently. `work` may have any content before
+  and after the call.
 */
-template <class ConcurrencyTag, class Row, class Value>
+template <class ConcurrencyTag, class Row, class Value, class Store>
 void solve_harmonic(const linear_algebra::Sparse_cholesky& factor,
                     const Weighted_graph& graph,
                     const Node_constraints& constraints,
                     const Free_rows& rows,
                     const Value& value,
-                    std::vector<Row>& rhs,
-                    std::vector<Row>& work,
-                    std::vector<Row>& result)
+                    const Store& store,
+                    std::vector<Row>& work)
 {
-  rhs.resize(rows.size());
-  pcs::internal::for_each_index<ConcurrencyTag>(rows.size(), [&](std::size_t r) {
+  const auto load = [&](std::size_t r) {
     const std::size_t i = rows.node_of_row[r];
     Row b = Row::Zero();
     for (std::size_t e = graph.first[i]; e < graph.first[i + 1]; ++e)
@@ -146,12 +139,12 @@ void solve_harmonic(const linear_algebra::Sparse_cholesky& factor,
         b += graph.weight[e] * value(graph.neighbor[e]);
     if (constraints.is_soft(i))
       b += constraints.soft_weight(i, node_degree(graph, i)) * value(i);
-    rhs[r] = b;
-  });
-  factor.solve<ConcurrencyTag>(rhs, work);
-  pcs::internal::for_each_index<ConcurrencyTag>(rows.size(), [&](std::size_t r) {
-    result[rows.node_of_row[r]] = rhs[r];
-  });
+    return b;
+  };
+  factor.solve_each<ConcurrencyTag>(
+      load,
+      [&](std::size_t r, const Row& u) { store(rows.node_of_row[r], u); },
+      work);
 }
 
 } // namespace deformation

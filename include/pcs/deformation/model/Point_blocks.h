@@ -41,6 +41,9 @@ class Point_blocks
 public:
   Point_blocks() = default;
 
+  /// Points without positions, which may have normals.
+  explicit Point_blocks(std::size_t n) : m_size(n) {}
+
   /// \param position `position(i)` is the position of point `i` in `[0, n)`
   template <class Vector_at>
   Point_blocks(std::size_t n, const Vector_at& position) : m_size(n)
@@ -60,6 +63,7 @@ public:
 
   std::size_t size() const { return m_size; }
   std::size_t number_of_blocks() const { return (m_size + lanes - 1) / lanes; }
+  bool has_positions() const { return !m_positions.empty(); }
   bool has_normals() const { return !m_normals.empty(); }
 
   template <class Vector_at>
@@ -67,6 +71,7 @@ public:
   {
     pack<CGAL::Sequential_tag>(position, m_positions);
   }
+  void forget_positions() { m_positions = Blocks(); }
   template <class Vector_at>
   void set_normals(const Vector_at& normal)
   {

@@ -76,6 +76,8 @@ public:
       return;
     m_network.surface =
         sample_graph(finer.rest, finer.surface, m_node_of_sample, regions, m_weight_unit);
+    m_network.surface.neighbor.shrink_to_fit();
+    m_network.surface.weight.shrink_to_fit();
     m_links = link_by_regions<ConcurrencyTag>(finer.rest,
                                               m_node_of_sample,
                                               regions,
@@ -86,6 +88,7 @@ public:
       return;
     m_sample_of_node = std::move(regions.sample_of_point);
     m_border_finder = Border_finder(finer.surface);
+    m_network.rest.reserve(m_node_of_sample.size());
     for (const auto node : m_node_of_sample) {
       m_network.rest.push_back(finer.rest[node]);
       m_component.push_back(component[node]);
@@ -93,10 +96,10 @@ public:
     set_areas<ConcurrencyTag>(m_component, m_network);
     if (has_links && m_network.size() <= largest_linked_network)
       m_network.links = interior_links<ConcurrencyTag>(m_network, m_component);
-    if (is_stopped())
-      return;
-    rank_nodes(m_network);
   }
+
+  /// Finds the order of elimination. It saves time if `factorize()` is called repeatedly.
+  void rank() { rank_nodes(m_network); }
 
   const Elastic_network& network() const { return m_network; }
   const std::vector<std::uint32_t>& component() const { return m_component; }
@@ -116,11 +119,13 @@ public:
                            m_constraints);
   }
 
-  /// Prepares `improve()`. Returns `false` if a matrix is singular, or if `go_on` does.
+  /// Prepares `improve()`. Returns `false` if a matrix is singular, or if `go_on` does. \param
+  /// is_exact see `Elastic_factors::factorize()`
   bool factorize(const Elastic_network& finer,
                  const Node_constraints& of_finer,
                  double stiffness,
-                 const pcs::internal::Go_on& go_on = {})
+                 const pcs::internal::Go_on& go_on = {},
+                 bool is_exact = true)
   {
     const auto handle_of_node = [&](std::size_t node) {
       return of_finer.is_prescribed(node) ? of_finer.handle_of_node[node] : free_node;
@@ -139,7 +144,7 @@ public:
                                                                      handle_of_node,
                                                                      position},
         constraints);
-    return m_solver.constrain(m_bounded, std::move(constraints), stiffness, go_on);
+    return m_solver.constrain(m_bounded, std::move(constraints), stiffness, go_on, is_exact);
   }
 
   /// Transfers the offsets of the nodes of handles with targets from the finer level.
@@ -169,9 +174,9 @@ public:
 
   const Node_targets& targets() const { return m_targets; }
 
-  /// Iterates on this level, unless `progress` cancels. On input, `guess` is empty or refers to the
-  /// nodes of this level; on output it refers to the nodes of the finer level. The tolerance is
-  /// proportional to the cost of an iteration relative to one with `finest_size` nodes.
+  /// Iterates on this level, unless `progress` cancels. `guess` is empty or refers to the nodes of
+  /// this level, before and after the call; `carry()` follows. The tolerance is proportional to the
+  /// cost of an iteration relative to one with `finest_size` nodes.
   void improve(const std::vector<Similarity>& transforms,
                Elastic_options options,
                std::size_t finest_size,
@@ -183,7 +188,7 @@ public:
     options.tolerance *= coarse_share_of_tolerance * static_cast<double>(m_network.size()) /
                          static_cast<double>(finest_size);
     pcs::internal::Progress only_stops([&](double) { return progress(0); });
-    const Elastic_result result = m_solver.solve(transforms, options, only_stops, guess);
+    const Elastic_result result = m_solver.solve(transforms, options, only_stops, &guess);
     guess.is_far_from_field =
         result.is_far_from_field || result.energy < sure_advantage * result.first_pass_energy;
     if (needs_link_offsets)
@@ -192,8 +197,10 @@ public:
     if (guess.is_far_from_field || needs_link_offsets ||
         result.energy < least_advantage * result.first_pass_energy)
       guess.deviations = m_solver.deviations();
-    carry(guess);
   }
+
+  /// Frees the memory of `improve()`, except for the factors.
+  void free_state() { m_solver.free_state(); }
 
   /// Interpolates a guess for the nodes of this level at the nodes of the finer level.
   void carry(Deviation_guess& guess)
@@ -202,6 +209,18 @@ public:
       to_finer(guess.deviations);
     if (!guess.link_offsets.empty())
       to_finer(guess.link_offsets);
+  }
+
+  /// The same for the finest level, with less memory: offsets are interpolated when they are read.
+  /// `guess` must not be moved or copied afterwards.
+  void carry_to_finest(Deviation_guess& guess)
+  {
+    if (!guess.deviations.empty())
+      to_finer(guess.deviations);
+    if (!guess.link_offsets.empty())
+      guess.link_offset = [this, &guess](std::size_t i) {
+        return interpolate(guess.link_offsets, i);
+      };
   }
 
   /// Transfers the new rest shape of the finer level.
@@ -247,13 +266,21 @@ private:
         m_targets.set(s, mean[s]);
   }
 
+  /// Interpolates values of the nodes of this level at a node of the finer level.
+  Vec3 interpolate(const std::vector<Vec3>& values, std::size_t i) const
+  {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t b = i * m_links.k; b < (i + 1) * m_links.k; ++b)
+      if (m_links.sample[b] != no_sample)
+        sum += static_cast<double>(m_links.weight[b]) * values[m_links.sample[b]];
+    return sum;
+  }
+
   void to_finer(std::vector<Vec3>& values)
   {
-    m_fine.assign(m_sample_of_node.size(), Vec3::Zero());
+    m_fine.resize(m_sample_of_node.size());
     pcs::internal::for_each_index<ConcurrencyTag>(m_fine.size(), [&](std::size_t i) {
-      for (std::size_t b = i * m_links.k; b < (i + 1) * m_links.k; ++b)
-        if (m_links.sample[b] != no_sample)
-          m_fine[i] += static_cast<double>(m_links.weight[b]) * values[m_links.sample[b]];
+      m_fine[i] = interpolate(values, i);
     });
     if (m_fine.size() <= most_kept_nodes)
       values.assign(m_fine.begin(), m_fine.end()); // reuses the memory of both

@@ -42,7 +42,7 @@ public:
                 std::vector<std::uint32_t> component,
                 bool has_links,
                 const pcs::internal::Go_on& go_on = {})
-    : m_size_of_passes(finest.size())
+    : m_size_of_finest(finest.size()), m_size_of_passes(finest.size())
   {
     const Elastic_network* finer = &finest;
     const std::vector<std::uint32_t>* of_finer = &component;
@@ -58,6 +58,11 @@ public:
         m_first = m_level.size() - 1;
         m_size_of_passes = finer->size();
       }
+    }
+    for (std::size_t l = m_first; l < m_level.size(); ++l) {
+      m_level[l].rank();
+      if (m_level[l].network().size() >= least_watched_rows && !pcs::internal::goes_on(go_on, 1))
+        return;
     }
   }
 
@@ -79,7 +84,12 @@ public:
       m_level[l].constrain(*of_finer);
       const auto part = pcs::internal::part_of(go_on, begin, begin + 1 / count);
       if (l >= m_first)
-        is_regular = m_level[l].factorize(*finer, *of_finer, stiffness, part) && is_regular;
+        is_regular = m_level[l].factorize(*finer,
+                                          *of_finer,
+                                          stiffness,
+                                          part,
+                                          m_size_of_finest <= most_exact_rows) &&
+                     is_regular;
       finer = &m_level[l].network();
       of_finer = &m_level[l].constraints();
     }
@@ -100,16 +110,17 @@ public:
   }
 
   /// Solves from the coarsest to the finest level, unless `progress` cancels. Returns the guess for
-  /// the session's network.
-  const Deviation_guess& solve(const std::vector<Similarity>& transforms,
-                               const Elastic_options& options,
-                               pcs::internal::Progress& progress)
+  /// the session's network. Frees the memory of all iterations if this network is large.
+  Deviation_guess& solve(const std::vector<Similarity>& transforms,
+                         const Elastic_options& options,
+                         pcs::internal::Progress& progress)
   {
     Deviation_guess& guess = m_guess;
     guess.deviations.clear();
     guess.link_offsets.clear();
+    guess.link_offset = nullptr;
     guess.is_far_from_field = false;
-    for (std::size_t l = m_level.size(); l-- > 0 && progress(0);)
+    for (std::size_t l = m_level.size(); l-- > 0 && progress(0);) {
       if (l >= m_first)
         m_level[l].improve(transforms,
                            options,
@@ -117,8 +128,13 @@ public:
                            m_has_offsets && l == m_first,
                            progress,
                            guess);
-      else
+      if (l > 0)
         m_level[l].carry(guess);
+      else
+        m_level[l].carry_to_finest(guess);
+    }
+    for (std::size_t l = m_first; l < m_level.size() && m_size_of_finest > most_kept_nodes; ++l)
+      m_level[l].free_state();
     return guess;
   }
 
@@ -148,6 +164,7 @@ private:
   Deviation_guess m_guess;
   std::size_t m_first = 0;          ///< finest level that is solved; finer ones only interpolate
   bool m_has_offsets = false;       ///< whether it has links that finer networks lack
+  std::size_t m_size_of_finest = 0; ///< size of the session's network
   std::size_t m_size_of_passes = 0; ///< size of the finest network that is solved to convergence
 };
 

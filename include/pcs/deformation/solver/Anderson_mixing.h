@@ -21,7 +21,8 @@ namespace deformation {
 /*!
   For the iteration `x <- g(x)`, proposes the combination of the last few `g(x_j)` that minimises
   the combined residual of the `g(x_j) - x_j` (D. G. Anderson 1965; H. F. Walker, P. Ni, SIAM J.
-  Numer. Anal. 49, 2011). Memory: `2 depth` vectors.
+  Numer. Anal. 49, 2011). Memory: `2 depth` vectors, in single precision if they are long: they are
+  differences, whose relative errors of 1e-7 matter little.
 */
 template <class ConcurrencyTag>
 class Anderson_mixing
@@ -29,6 +30,8 @@ class Anderson_mixing
 public:
   using Vec3 = Eigen::Vector3d;
   static constexpr std::size_t depth = 5;
+  /// Longest vectors of which differences are stored in double precision. [count]
+  static constexpr std::size_t most_exact_entries = 65536;
 
   /// Discards all earlier iterates; their memory is reused.
   void restart()
@@ -51,32 +54,57 @@ public:
       });
       return;
     }
-    m_difference_of_residuals[slot].resize(n);
-    m_difference_of_images[slot].resize(n);
-    pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t i) {
+    if (n > most_exact_entries)
+      mix_with(m_short, slot, x, g, is_wanted);
+    else
+      mix_with(m_exact, slot, x, g, is_wanted);
+  }
+
+private:
+  /// Differences of the last residuals and images.
+  template <class Scalar>
+  struct Differences
+  {
+    using Vector = Eigen::Matrix<Scalar, 3, 1>;
+    std::vector<Vector> residual[depth], image[depth];
+
+    static Vector rounded(const Vec3& v) { return v.template cast<Scalar>(); }
+  };
+
+  template <class Scalar>
+  void mix_with(Differences<Scalar>& differences,
+                std::size_t slot,
+                const std::vector<Vec3>& x,
+                std::vector<Vec3>& g,
+                bool is_wanted)
+  {
+    auto &of_residuals = differences.residual[slot], &of_images = differences.image[slot];
+    of_residuals.resize(x.size());
+    of_images.resize(x.size());
+    pcs::internal::for_each_index<ConcurrencyTag>(x.size(), [&](std::size_t i) {
       const Vec3 residual = g[i] - x[i];
-      m_difference_of_residuals[slot][i] = residual - m_last_residual[i];
-      m_difference_of_images[slot][i] = g[i] - m_last_image[i];
+      of_residuals[i] = differences.rounded(residual - m_last_residual[i]);
+      of_images[i] = differences.rounded(g[i] - m_last_image[i]);
       m_last_residual[i] = residual;
       m_last_image[i] = g[i];
     });
     ++m_count;
     const std::size_t size = std::min(m_count, depth);
-    const Products products = multiply(slot, size);
+    const Products products = multiply(differences, slot, size);
     for (std::size_t a = 0; a < size; ++a)
       m_normal[a][slot] = m_normal[slot][a] = products.with_new[a];
     if (is_wanted)
-      propose(size, products.with_residual, g);
+      propose(differences, size, products.with_residual, g);
   }
 
-private:
   /// Dot products of the differences of residuals with the newest difference and the last residual.
   struct Products
   {
     std::array<double, depth> with_new{}, with_residual{};
   };
 
-  Products multiply(std::size_t slot, std::size_t size)
+  template <class Scalar>
+  Products multiply(const Differences<Scalar>& differences, std::size_t slot, std::size_t size)
   {
     return pcs::internal::blocked_reduce<ConcurrencyTag>(
         m_last_residual.size(),
@@ -84,8 +112,8 @@ private:
         [&](std::size_t i) {
           Products p;
           for (std::size_t a = 0; a < size; ++a) {
-            const Vec3& difference = m_difference_of_residuals[a][i];
-            p.with_new[a] = difference.dot(m_difference_of_residuals[slot][i]);
+            const Vec3 difference = differences.residual[a][i].template cast<double>();
+            p.with_new[a] = difference.dot(differences.residual[slot][i].template cast<double>());
             p.with_residual[a] = difference.dot(m_last_residual[i]);
           }
           return p;
@@ -101,7 +129,9 @@ private:
         m_products);
   }
 
-  void propose(std::size_t size,
+  template <class Scalar>
+  void propose(const Differences<Scalar>& differences,
+               std::size_t size,
                const std::array<double, depth>& with_residual,
                std::vector<Vec3>& g) const
   {
@@ -122,12 +152,14 @@ private:
       return;
     pcs::internal::for_each_index<ConcurrencyTag>(g.size(), [&](std::size_t i) {
       for (std::size_t a = 0; a < size; ++a)
-        g[i] -= gamma[static_cast<Eigen::Index>(a)] * m_difference_of_images[a][i];
+        g[i] -=
+            gamma[static_cast<Eigen::Index>(a)] * differences.image[a][i].template cast<double>();
     });
   }
 
   std::vector<Vec3> m_last_residual, m_last_image;
-  std::vector<Vec3> m_difference_of_residuals[depth], m_difference_of_images[depth];
+  Differences<double> m_exact;
+  Differences<float> m_short;
   std::vector<Products> m_products; ///< partial sums by block
   std::array<std::array<double, depth>, depth> m_normal{};
   std::size_t m_count = 0;

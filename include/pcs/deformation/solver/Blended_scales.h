@@ -120,14 +120,14 @@ private:
       return Vec1(
           std::log(transforms[static_cast<std::size_t>(constraints.handle_of_node[i])].scale()));
     };
-    solve_harmonic<ConcurrencyTag>(factors.field(),
-                                   network.surface,
-                                   constraints,
-                                   factors.rows(),
-                                   value,
-                                   m_rhs,
-                                   m_work,
-                                   m_log_scale);
+    solve_harmonic<ConcurrencyTag>(
+        factors.field(),
+        network.surface,
+        constraints,
+        factors.rows(),
+        value,
+        [&](std::size_t i, const Vec1& u) { m_log_scale[i] = u; },
+        m_work);
     for (std::size_t i = 0; i < network.size(); ++i)
       if (constraints.is_prescribed(i))
         m_log_scale[i] = value(i);
@@ -185,7 +185,7 @@ private:
         512);
   }
 
-  std::vector<Vec1> m_log_scale, m_rhs, m_work;
+  std::vector<Vec1> m_log_scale, m_work;
   std::vector<Sums> m_sums, m_next_sums;
   std::vector<Vec3> m_direction; ///< of the gradient at rest, or null
   std::vector<Eigen::Matrix3d> m_growth;

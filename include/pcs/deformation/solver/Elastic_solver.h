@@ -60,41 +60,44 @@ public:
   bool constrain(const Elastic_network& network,
                  Node_constraints constraints,
                  double stiffness,
-                 const pcs::internal::Go_on& go_on = {})
+                 const pcs::internal::Go_on& go_on = {},
+                 bool is_exact = true)
   {
-    return m_shape.constrain(network, std::move(constraints), stiffness, go_on);
+    return m_shape.constrain(network, std::move(constraints), stiffness, go_on, is_exact);
   }
 
   /// Solves for one transformation per handle, starting from the rest shape. If the guess is known
   /// to be better, it is the initial state; otherwise it is compared with the state after the first
   /// iteration. If the guess was computed with links that this network lacks, energies cannot be
-  /// compared. The guess is then accepted, and a single iteration follows.
+  /// compared. The guess is then accepted, and a single iteration follows. Large guesses are freed
+  /// after their use.
   Elastic_result solve(const std::vector<Similarity>& transforms,
                        const Elastic_options& options,
                        pcs::internal::Progress& progress,
-                       const Deviation_guess& guess = {})
+                       Deviation_guess* given = nullptr)
   {
+    Deviation_guess none;
+    Deviation_guess& guess = given ? *given : none;
     Elastic_result result;
     const bool has_passes = options.maximal_number_of_passes > 0;
-    const bool has_offsets = has_passes && !guess.link_offsets.empty() && !m_shape.has_links();
-    m_shape.begin(transforms, options, false, has_offsets ? &guess.link_offsets : nullptr);
+    const bool has_offsets = has_passes && guess.link_offset && !m_shape.has_links();
+    m_shape.begin(transforms, options, false, has_offsets ? &guess.link_offset : nullptr);
     m_mixing.restart();
     if (is_stopped(progress, result))
       return result;
     m_smooth.assign(network().size(), Vec3::Zero());
-    m_best_smooth.assign(network().size(), Vec3::Zero());
-    set_held_deviations();
+    m_shape.set_held_deviations(m_smooth);
     result.is_far_from_field = has_offsets || (has_passes && guess.is_far_from_field);
     if (result.is_far_from_field)
       take(guess);
     else if (!targets().empty())
       m_shape.interpolate_deviations(m_smooth);
-    if (result.is_far_from_field || !targets().empty())
-      m_shape.turn(m_smooth);
-    m_shape.place(true);
+    m_best_smooth.assign(network().size(), Vec3::Zero());
+    m_shape.set_held_deviations(m_best_smooth);
+    m_shape.place(m_smooth, true);
     if (is_stopped(progress, result))
       return result;
-    result.energy = result.initial_energy = m_shape.fit_and_measure(true);
+    result.energy = result.initial_energy = m_shape.fit_and_measure(m_smooth, true);
     make_passes(options, progress, result.is_far_from_field ? nullptr : &guess, result);
     finish();
     return result;
@@ -115,16 +118,27 @@ public:
     result = Elastic_result();
     m_shape.begin(transforms, options, true, nullptr);
     m_mixing.restart();
-    set_held_deviations();
+    m_best_smooth.assign(network().size(), Vec3::Zero());
+    m_shape.set_held_deviations(m_smooth);
+    m_shape.set_held_deviations(m_best_smooth);
     result.is_far_from_field = true;
-    m_shape.turn(m_smooth);
-    m_shape.place(false);
-    result.energy = result.initial_energy = m_shape.fit_and_measure(true);
+    m_shape.place(m_smooth, false);
+    result.energy = result.initial_energy = m_shape.fit_and_measure(m_smooth, true);
     if (!(result.energy <= highest_energy))
       return false;
     make_passes(options, progress, nullptr, result);
     finish();
     return true;
+  }
+
+  /// Frees all memory except that of the factors. Afterwards, only `constrain()` and `solve()` may
+  /// be called.
+  void free_state()
+  {
+    m_shape.free_state();
+    m_mixing = Anderson_mixing<ConcurrencyTag>();
+    for (std::vector<Vec3>* v : {&m_smooth, &m_best_smooth, &m_plain, &m_state, &m_image})
+      *v = std::vector<Vec3>();
   }
 
 private:
@@ -137,8 +151,10 @@ private:
     if (network().size() <= most_kept_nodes)
       return;
     m_mixing = Anderson_mixing<ConcurrencyTag>();
-    for (std::vector<Vec3>* v : {&m_plain, &m_state, &m_image})
+    for (std::vector<Vec3>* v : {&m_best_smooth, &m_plain, &m_state, &m_image})
       *v = std::vector<Vec3>();
+    if (m_shape.has_link_offsets()) // no solve continues from here
+      m_smooth = std::vector<Vec3>();
   }
 
   /// Asks between the steps before the first iteration, which take long for large networks.
@@ -150,16 +166,10 @@ private:
     return true;
   }
 
-  void set_held_deviations()
-  {
-    m_shape.set_held_deviations(m_smooth);
-    m_shape.set_held_deviations(m_best_smooth);
-  }
-
   /// Performs all iterations. The guess, if given, may replace the state after the first iteration.
   void make_passes(const Elastic_options& options,
                    pcs::internal::Progress& progress,
-                   const Deviation_guess* guess,
+                   Deviation_guess* guess,
                    Elastic_result& result)
   {
     result.status =
@@ -218,8 +228,8 @@ private:
       energy = apply_deviations(!is_last);
     }
     if (!(energy < result.energy)) {
-      m_shape.swap_kept(m_best_smooth);
       m_smooth.swap(m_best_smooth);
+      m_shape.return_to(m_smooth);
       return false;
     }
     result.energy = energy;
@@ -254,43 +264,43 @@ private:
       });
   }
 
-  void take(const Deviation_guess& guess)
+  void take(Deviation_guess& guess)
   {
     for (const auto i : rows().node_of_row)
       m_smooth[i] = i < guess.deviations.size() ? guess.deviations[i] : Vec3(Vec3::Zero());
+    if (guess.deviations.size() > most_kept_nodes)
+      guess.deviations = std::vector<Vec3>();
   }
 
   /// Replaces the current state by the guess if the guess has clearly less energy. Returns whether
   /// it did. The guess may be worse: where the rotation field of the handles explains the motion,
   /// the field is more accurate than a coarse network, and a coarse network may fold where this one
   /// does not.
-  bool start_from(const Deviation_guess& guess, Elastic_result& result)
+  bool start_from(Deviation_guess& guess, Elastic_result& result)
   {
     m_shape.keep_all();
     m_best_smooth.swap(m_smooth);
     take(guess);
-    m_shape.turn(m_smooth);
-    m_shape.follow(true); // the current positions do not depend on the guess
+    m_shape.follow(m_smooth, true); // the current positions do not depend on the guess
     if (m_shape.has_links())
       for (int i = 0; i < settling_solves; ++i)
         m_shape.solve_positions(false);
-    const double energy = m_shape.fit_and_measure(true);
+    const double energy = m_shape.fit_and_measure(m_smooth, true);
     if (energy < guess_advantage * result.energy) {
       result.energy = energy;
       m_mixing.restart();
       return true;
     }
-    m_shape.restore_all();
     m_smooth.swap(m_best_smooth);
+    m_shape.restore_all(m_smooth);
     return false;
   }
 
   /// Computes the next shape from the deviations. Returns its energy [L^2].
   double apply_deviations(bool has_next)
   {
-    m_shape.turn(m_smooth);
-    m_shape.follow(false);
-    return m_shape.fit_and_measure(has_next);
+    m_shape.follow(m_smooth, false);
+    return m_shape.fit_and_measure(m_smooth, has_next);
   }
 
   Elastic_step<ConcurrencyTag> m_shape;

@@ -26,6 +26,7 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -66,18 +67,20 @@ public:
   }
 
   /// Factorises for the given constraints. The network must outlive its use here. Returns `false`
-  /// if a matrix is singular (a free component without handle), or if `go_on` does.
+  /// if a matrix is singular (a free component without handle), or if `go_on` does. \param is_exact
+  /// see `Elastic_factors::factorize()`
   bool constrain(const Elastic_network& network,
                  Node_constraints constraints,
                  double stiffness,
-                 const pcs::internal::Go_on& go_on)
+                 const pcs::internal::Go_on& go_on,
+                 bool is_exact)
   {
     m_network = &network;
     m_constraints = std::move(constraints);
     m_targets.clear();
     m_loads.clear();
     const bool is_regular =
-        m_factors.factorize<ConcurrencyTag>(network, m_constraints, stiffness, go_on);
+        m_factors.factorize<ConcurrencyTag>(network, m_constraints, stiffness, go_on, is_exact);
     m_position = network.rest;
     m_frame.assign(network.size(), Eigen::Matrix3d::Identity());
     return is_regular;
@@ -91,15 +94,17 @@ public:
   /*!
     Begins a solve for new motions of the handles, with the rotations of their field.
     \param is_further whether the stretch of the material is kept
-    \param link_offsets offsets of the first nodes by links that this network lacks; may be null
+    \param link_offset the offset of a node by links that this network lacks; may be null
   */
   void begin(const std::vector<Similarity>& transforms,
              const Elastic_options& options,
              bool is_further,
-             const std::vector<Vec3>* link_offsets)
+             const std::function<Vec3(std::size_t)>* link_offset)
   {
     m_transforms = &transforms;
-    m_link_offsets = nullptr;
+    m_link_offset = nullptr;
+    m_position.resize(m_network->size());
+    m_frame.resize(m_network->size());
     m_loads.clear();
     m_poisson_ratio = options.poisson_ratio;
     if (!is_further)
@@ -112,31 +117,18 @@ public:
                    rows(),
                    transforms,
                    m_field,
-                   m_memory);
-    m_rotation = m_field;
+                   m_work);
     m_scales.begin(*m_network, m_constraints, m_factors, transforms);
     if (!m_scales.growth().empty())
       find_room();
-    m_link_offsets = link_offsets;
+    m_link_offset = link_offset;
     if (!m_targets.empty())
       find_loads();
   }
 
   /// Whether positions contain offsets by links of another network. If so, energies cannot be
   /// compared with those of other solutions.
-  bool has_link_offsets() const { return m_link_offsets != nullptr; }
-
-  /// Computes the rotations from deviations. [rad]
-  void turn(const std::vector<Vec3>& deviations)
-  {
-    pcs::internal::for_each_index<ConcurrencyTag>(
-        rows().size(),
-        [&](std::size_t r) {
-          const std::size_t i = rows().node_of_row[r];
-          m_rotation[i] = rotation_from_rodrigues(deviations[i]) * m_field[i];
-        },
-        block);
-  }
+  bool has_link_offsets() const { return m_link_offset != nullptr; }
 
   /// Sets the deviations of the nodes of handles with targets, which are constant.
   void set_held_deviations(std::vector<Vec3>& deviations) const
@@ -149,23 +141,23 @@ public:
   /// Interpolates the deviations of the nodes of handles with targets harmonically.
   void interpolate_deviations(std::vector<Vec3>& deviations)
   {
-    m_memory.rhs = m_loads.of_rows();
-    m_factors.field().template solve<ConcurrencyTag>(m_memory.rhs, m_memory.work);
-    for (std::size_t r = 0; r < rows().size(); ++r)
-      deviations[rows().node_of_row[r]] = m_memory.rhs[r];
+    m_factors.field().template solve_each<ConcurrencyTag>(
+        [&](std::size_t r) -> const Vec3& { return m_loads.of_rows()[r]; },
+        [&](std::size_t r, const Vec3& u) { deviations[rows().node_of_row[r]] = u; },
+        m_work);
   }
 
   /// Computes the positions of constrained nodes, then of all other nodes.
-  void place(bool links_turn)
+  void place(const std::vector<Vec3>& deviations, bool links_turn)
   {
     place_constrained_nodes(*m_network, m_constraints, *m_transforms, m_targets, m_position);
-    follow(links_turn);
+    follow(deviations, links_turn);
   }
 
-  /// Computes the positions from the rotations.
-  void follow(bool links_turn)
+  /// Computes the rotations from deviations [rad], and the positions from the rotations.
+  void follow(const std::vector<Vec3>& deviations, bool links_turn)
   {
-    update_frames();
+    update_frames(deviations);
     solve_positions(links_turn);
   }
 
@@ -173,32 +165,29 @@ public:
   /// directions in the last positions.
   void solve_positions(bool links_turn)
   {
-    m_position_solver(state(),
-                      *m_transforms,
-                      m_targets,
-                      m_factors,
-                      links_turn,
-                      m_position,
-                      m_memory);
-    if (m_link_offsets)
-      for (const auto i : rows().node_of_row)
-        if (i < m_link_offsets->size())
-          m_position[i] += (*m_link_offsets)[i];
+    m_position_solver(state(), *m_transforms, m_targets, m_factors, links_turn, m_position, m_work);
+    if (m_link_offset)
+      pcs::internal::for_each_index<ConcurrencyTag>(rows().size(), [&](std::size_t r) {
+        const std::size_t i = rows().node_of_row[r];
+        m_position[i] += (*m_link_offset)(i);
+      });
   }
 
   /// Returns the energy of the current state, without the constant energy inside handles with
-  /// targets. If a further iteration follows, also computes the deviation of each node's best
-  /// rotation from the field.
-  double fit_and_measure(bool has_next)
+  /// targets. If an iteration follows, also prepares `smooth_deviations()`: it computes the
+  /// deviation of each node's best rotation from the field.
+  /// \param deviations those of the current rotations
+  double fit_and_measure(const std::vector<Vec3>& deviations, bool has_next)
   {
     const std::size_t n = m_network->size();
-    m_deviation.resize(n);
+    if (has_next)
+      m_work.resize(m_factors.smoothing().size_of_work());
     m_energies.resize((n + block - 1) / block);
     pcs::internal::for_each_block<ConcurrencyTag>(n,
                                                   block,
                                                   [&](std::size_t begin, std::size_t end) {
                                                     m_energies[begin / block] =
-                                                        fit_block(begin, end, has_next);
+                                                        fit_block(deviations, begin, end, has_next);
                                                   });
     const double sum = std::accumulate(m_energies.begin(), m_energies.end(), 0.0);
     const double energy = sum - m_loads.held_energy();
@@ -206,18 +195,14 @@ public:
   }
 
   /// Smooths the deviations of the best-fitting rotations: `(L + mu D) d' = mu D d`, plus the loads
-  /// of nodes that handles with targets turn. [rad]
+  /// of nodes that handles with targets turn. There must be no other solve since
+  /// `fit_and_measure()`, which stores the right-hand side in the memory of solves. [rad]
   void smooth_deviations(std::vector<Vec3>& smooth)
   {
-    m_memory.rhs.resize(rows().size());
+    const linear_algebra::Sparse_cholesky& factor = m_factors.smoothing();
+    factor.template solve_placed<ConcurrencyTag>(m_work);
     pcs::internal::for_each_index<ConcurrencyTag>(rows().size(), [&](std::size_t r) {
-      m_memory.rhs[r] = m_factors.fit_weight(r) * m_deviation[rows().node_of_row[r]];
-      if (!m_loads.of_rows().empty())
-        m_memory.rhs[r] += m_loads.of_rows()[r];
-    });
-    m_factors.smoothing().template solve<ConcurrencyTag>(m_memory.rhs, m_memory.work);
-    pcs::internal::for_each_index<ConcurrencyTag>(rows().size(), [&](std::size_t r) {
-      smooth[rows().node_of_row[r]] = m_memory.rhs[r];
+      smooth[rows().node_of_row[r]] = m_work[factor.place_of_row(r)];
     });
   }
 
@@ -229,7 +214,7 @@ public:
   /// without links for the same frames. Empty without links. One solve. [L]
   void link_offsets(std::vector<Vec3>& offsets)
   {
-    m_position_solver.link_offsets(state(), *m_transforms, m_targets, m_factors, offsets, m_memory);
+    m_position_solver.link_offsets(state(), *m_transforms, m_targets, m_factors, offsets, m_work);
   }
 
   /// Frees the memory of a large network that only iterations need.
@@ -237,42 +222,62 @@ public:
   {
     if (m_network->size() <= most_kept_nodes)
       return;
-    m_memory = Solve_memory();
-    for (std::vector<Vec3>* v : {&m_deviation, &m_kept_position, &m_kept_deviation, &m_ungrown})
+    for (std::vector<Vec3>* v : {&m_work, &m_kept_position, &m_ungrown})
       *v = std::vector<Vec3>();
-    m_kept_rotation = decltype(m_kept_rotation)();
+    m_field = std::vector<Quaternion>();
+  }
+
+  /// Frees all memory except that of the factors. The next `begin()` provides it again.
+  void free_state()
+  {
+    for (std::vector<Vec3>* v :
+         {&m_work, &m_position, &m_kept_position, &m_ungrown, &m_kept_directing})
+      *v = std::vector<Vec3>();
+    for (std::vector<Eigen::Matrix3d>* v : {&m_frame, &m_stretch, &m_target, &m_target_stretch})
+      *v = std::vector<Eigen::Matrix3d>();
+    m_field = std::vector<Quaternion>();
+    m_scales = Blended_scales<ConcurrencyTag>();
+    m_position_solver = Position_solver<ConcurrencyTag>();
   }
 
   /// \name Stored States
   /// @{
 
-  /// Stores the positions.
-  void keep() { m_kept_position = m_position; }
-  /// Restores positions and frames. \param deviations those of the stored positions
-  void swap_kept(const std::vector<Vec3>& deviations)
+  /// Stores the positions, unless they are computed again.
+  void keep()
   {
-    m_position.swap(m_kept_position);
-    turn(deviations);
-    find_frames();
+    if (!is_computed_again())
+      m_kept_position = m_position;
   }
-  /// Restores the stored positions only.
-  void restart_from_kept() { m_position = m_kept_position; }
+  /// Returns to the stored positions. \param deviations those of the stored positions
+  void return_to(const std::vector<Vec3>& deviations)
+  {
+    find_frames(deviations);
+    if (is_computed_again())
+      solve_positions(false);
+    else
+      m_position.swap(m_kept_position);
+  }
+  /// Restores the stored positions only, from which links take their directions.
+  void restart_from_kept()
+  {
+    if (!is_computed_again())
+      m_position = m_kept_position;
+  }
 
   /// Stores the complete state from which an iteration continues.
   void keep_all()
   {
     keep();
-    m_kept_deviation = m_deviation;
-    m_kept_rotation = m_rotation;
     m_kept_directing = m_position_solver.directing();
   }
-  void restore_all()
+  /// Restores it, except for the rotations that fit best, which are computed again.
+  /// \param deviations those of the stored positions
+  void restore_all(const std::vector<Vec3>& deviations)
   {
-    m_position.swap(m_kept_position);
-    m_deviation.swap(m_kept_deviation);
-    m_rotation.swap(m_kept_rotation);
-    find_frames();
+    return_to(deviations);
     m_position_solver.restore_directing(m_kept_directing);
+    fit_and_measure(deviations, true);
   }
 
   /// @}
@@ -282,8 +287,32 @@ private:
 
   bool is_stretched() const { return m_poisson_ratio != 0; }
 
+  /// Whether the positions of an earlier state are computed again rather than stored. They follow
+  /// from the deviations, unless there are links or a stretch.
+  bool is_computed_again() const
+  {
+    return m_network->size() > most_kept_nodes && !has_links() && !is_stretched();
+  }
+
+  /// Returns the rotation of a node. \param deviations from the field; none if empty
+  Quaternion rotation(const std::vector<Vec3>& deviations, std::size_t i) const
+  {
+    return deviations.empty() ? m_field[i] : rotation_from_rodrigues(deviations[i]) * m_field[i];
+  }
+
+  /// Sets the entry of a node in the right-hand side of `smooth_deviations()`.
+  void set_fit(std::size_t i, const Vec3& deviation)
+  {
+    const std::size_t r = rows().row_of_node[i];
+    Vec3& entry = m_work[m_factors.smoothing().place_of_row(r)];
+    entry = m_factors.fit_weight(r) * deviation;
+    if (!m_loads.of_rows().empty())
+      entry += m_loads.of_rows()[r];
+  }
+
   /// Implements `fit_and_measure()` for a block of nodes.
-  double fit_block(std::size_t begin, std::size_t end, bool has_next)
+  double
+  fit_block(const std::vector<Vec3>& deviations, std::size_t begin, std::size_t end, bool has_next)
   {
     const Elastic_state state = this->state();
     const Edge_input edges = state.edges();
@@ -296,9 +325,7 @@ private:
     const auto finish = [&] {
       fit_rotations(fit_damping, count, fits);
       for (std::size_t k = 0; k < count; ++k)
-        m_deviation[node_of_fit[k]] = {fits.deviation[0][k],
-                                       fits.deviation[1][k],
-                                       fits.deviation[2][k]};
+        set_fit(node_of_fit[k], {fits.deviation[0][k], fits.deviation[1][k], fits.deviation[2][k]});
       count = 0;
     };
     for (std::size_t i = begin; i < end; ++i) {
@@ -314,7 +341,7 @@ private:
       if (is_stretched())
         m_stretch[i] = state.transverse_stretch(i, m_poisson_ratio);
       node_of_fit[count] = i;
-      fits.set(count++, covariance, m_rotation[i], m_field[i]);
+      fits.set(count++, covariance, rotation(deviations, i), m_field[i]);
       if (count == Rotation_fits::size)
         finish();
     }
@@ -331,16 +358,13 @@ private:
       return;
     std::vector<Vec3> deviations(m_network->size(), Vec3::Zero()), with, without;
     interpolate_deviations(deviations);
-    turn(deviations);
-    update_frames();
-    m_position_solver.without_links(state(), *m_transforms, m_targets, m_factors, with, m_memory);
+    update_frames(deviations);
+    m_position_solver.without_links(state(), *m_transforms, m_targets, m_factors, with, m_work);
     Node_targets targets;
     std::swap(targets, m_targets);
-    m_rotation = m_field;
     place_constrained_nodes(*m_network, m_constraints, *m_transforms, m_targets, m_position);
-    update_frames();
-    m_position_solver
-        .without_links(state(), *m_transforms, m_targets, m_factors, without, m_memory);
+    update_frames({});
+    m_position_solver.without_links(state(), *m_transforms, m_targets, m_factors, without, m_work);
     std::swap(targets, m_targets);
     place_constrained_nodes(*m_network, m_constraints, *m_transforms, m_targets, m_position);
     m_loads.find_link_targets(state(), *m_transforms, m_targets, with, without);
@@ -367,7 +391,7 @@ private:
   double energy_with_share(double share, bool is_solved = true)
   {
     m_scales.set_share(share);
-    update_frames();
+    update_frames({});
     if (is_solved)
       solve_positions(true);
     const Elastic_state state = this->state();
@@ -386,9 +410,10 @@ private:
         m_energies);
   }
 
-  void update_frames()
+  /// \param deviations from the field; none if empty
+  void update_frames(const std::vector<Vec3>& deviations)
   {
-    find_frames();
+    find_frames(deviations);
     if (!is_stretched())
       return;
     m_target.resize(m_network->size());
@@ -399,9 +424,9 @@ private:
         block);
   }
 
-  /// Computes the frames from the rotations. They are not stored for a later return, as they have
+  /// Computes the frames from the rotations. Neither is stored for a later return, as frames have
   /// the largest share of the memory of a state.
-  void find_frames()
+  void find_frames(const std::vector<Vec3>& deviations)
   {
     pcs::internal::for_each_index<ConcurrencyTag>(
         m_network->size(),
@@ -411,7 +436,7 @@ private:
                 (*m_transforms)[static_cast<std::size_t>(m_constraints.handle_of_node[i])],
                 i);
           } else {
-            m_frame[i] = m_rotation[i].toRotationMatrix();
+            m_frame[i] = rotation(deviations, i).toRotationMatrix();
             if (!m_scales.growth().empty())
               m_frame[i] *= m_scales.growth()[i];
           }
@@ -427,16 +452,15 @@ private:
   Blended_scales<ConcurrencyTag> m_scales;
 
   const std::vector<Similarity>* m_transforms = nullptr;
-  const std::vector<Vec3>* m_link_offsets = nullptr;
-  Solve_memory m_memory;
+  const std::function<Vec3(std::size_t)>* m_link_offset = nullptr;
+  std::vector<Vec3> m_work; ///< of solves, and the right-hand side of `smooth_deviations()`
   Node_targets m_targets;
   Target_loads m_loads;
   double m_poisson_ratio = 0;
-  std::vector<Quaternion> m_field, m_rotation, m_kept_rotation;
+  std::vector<Quaternion> m_field;
   std::vector<Eigen::Matrix3d> m_frame, m_stretch, m_target, m_target_stretch;
   std::vector<Vec3> m_position, m_kept_position, m_ungrown, m_kept_directing;
-  std::vector<Vec3> m_deviation, m_kept_deviation; ///< of the best local rotations from the field
-  std::vector<double> m_energies;                  ///< by block of nodes
+  std::vector<double> m_energies; ///< by block of nodes
 };
 
 } // namespace deformation

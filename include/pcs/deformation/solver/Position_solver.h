@@ -54,12 +54,12 @@ public:
                   const Elastic_factors& factors,
                   bool links_turn,
                   std::vector<Vec3>& position,
-                  Solve_memory& memory)
+                  std::vector<Vec3>& work)
   {
     const auto& links = state.network.links;
     if (!links.neighbor.empty() && !links_turn)
       m_directing = position;
-    solve(factors, factors.position(), memory, [&](std::size_t i) {
+    const auto load = [&](std::size_t i) {
       Vec3 b = surface_load(state, transforms, targets, i);
       if (!links.neighbor.empty())
         for (std::size_t e = links.first[i]; e < links.first[i + 1]; ++e) {
@@ -69,10 +69,13 @@ public:
             b += links.weight[e] * position[j];
         }
       return b;
-    });
-    pcs::internal::for_each_index<ConcurrencyTag>(memory.rhs.size(), [&](std::size_t r) {
-      position[factors.rows().node_of_row[r]] = memory.rhs[r];
-    });
+    };
+    solve(
+        factors,
+        factors.position(),
+        load,
+        [&](std::size_t i, const Vec3& x) { position[i] = x; },
+        work);
     if (!links.neighbor.empty() && links_turn)
       m_directing = position;
   }
@@ -89,14 +92,15 @@ public:
                      const Node_targets& targets,
                      const Elastic_factors& factors,
                      std::vector<Vec3>& result,
-                     Solve_memory& memory)
+                     std::vector<Vec3>& work)
   {
-    solve(factors, factors.field(), memory, [&](std::size_t i) {
-      return surface_load(state, transforms, targets, i);
-    });
     result = state.position;
-    for (std::size_t r = 0; r < memory.rhs.size(); ++r)
-      result[factors.rows().node_of_row[r]] = memory.rhs[r];
+    solve(
+        factors,
+        factors.field(),
+        [&](std::size_t i) { return surface_load(state, transforms, targets, i); },
+        [&](std::size_t i, const Vec3& x) { result[i] = x; },
+        work);
   }
 
   /// Computes the displacements by the links: the positions of `state` minus the positions without
@@ -106,35 +110,34 @@ public:
                     const Node_targets& targets,
                     const Elastic_factors& factors,
                     std::vector<Vec3>& offsets,
-                    Solve_memory& memory)
+                    std::vector<Vec3>& work)
   {
     offsets.clear();
     if (state.network.links.neighbor.empty())
       return;
-    solve(factors, factors.field(), memory, [&](std::size_t i) {
-      return surface_load(state, transforms, targets, i);
-    });
     offsets.assign(state.network.size(), Vec3::Zero());
-    for (std::size_t r = 0; r < memory.rhs.size(); ++r) {
-      const std::size_t i = factors.rows().node_of_row[r];
-      offsets[i] = state.position[i] - memory.rhs[r];
-    }
+    solve(
+        factors,
+        factors.field(),
+        [&](std::size_t i) { return surface_load(state, transforms, targets, i); },
+        [&](std::size_t i, const Vec3& x) { offsets[i] = state.position[i] - x; },
+        work);
   }
 
 private:
-  template <class Load>
-  void solve(const Elastic_factors& factors,
-             const linear_algebra::Sparse_cholesky& factor,
-             Solve_memory& memory,
-             Load load)
+  /// \param load, store see `Sparse_cholesky::solve_each()`, for nodes instead of rows
+  template <class Load, class Store>
+  static void solve(const Elastic_factors& factors,
+                    const linear_algebra::Sparse_cholesky& factor,
+                    const Load& load,
+                    const Store& store,
+                    std::vector<Vec3>& work)
   {
     const auto& node_of_row = factors.rows().node_of_row;
-    memory.rhs.resize(node_of_row.size());
-    pcs::internal::for_each_index<ConcurrencyTag>(
-        memory.rhs.size(),
-        [&](std::size_t r) { memory.rhs[r] = load(node_of_row[r]); },
-        512);
-    factor.template solve<ConcurrencyTag>(memory.rhs, memory.work);
+    factor.template solve_each<ConcurrencyTag>(
+        [&](std::size_t r) { return load(node_of_row[r]); },
+        [&](std::size_t r, const Vec3& x) { store(node_of_row[r], x); },
+        work);
   }
 
   static Vec3 surface_load(const Elastic_state& state,

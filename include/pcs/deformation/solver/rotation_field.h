@@ -46,7 +46,7 @@ public:
   static constexpr double widest_lifted_angle = 1.9;
   static constexpr int number_of_intrinsic_steps = 3;
 
-  /// Writes the rotation of every node to `field`, the identity for unreached nodes. `memory` may
+  /// Writes the rotation of every node to `field`, the identity for unreached nodes. `work` may
   /// have any content before and after the call.
   void operator()(Rotation_field kind,
                   const linear_algebra::Sparse_cholesky& factor,
@@ -55,9 +55,9 @@ public:
                   const Free_rows& rows,
                   const std::vector<Similarity>& transforms,
                   std::vector<Quaternion>& field,
-                  Solve_memory& memory)
+                  std::vector<Vec3>& work)
   {
-    m_memory = &memory;
+    m_work = &work;
     m_factor = &factor;
     m_graph = &graph;
     m_constraints = &constraints;
@@ -137,33 +137,29 @@ private:
 
   void blend_quaternions(std::vector<Quaternion>& field)
   {
-    m_value4.resize(field.size());
+    const auto store = [&](std::size_t i, const Vec4& sum) {
+      const double length = sum.norm();
+      // Opposite rotations of two handles cancel somewhere between them. The field is undefined
+      // there, and any rotation is valid.
+      if (length > 1e-12)
+        field[i].coeffs() = sum / length;
+    };
     solve_harmonic<ConcurrencyTag>(
         *m_factor,
         *m_graph,
         *m_constraints,
         *m_rows,
         [&](std::size_t i) { return Vec4(m_lifted[handle(i)].coeffs()); },
-        m_rhs4,
-        m_work4,
-        m_value4);
-    pcs::internal::for_each_index<ConcurrencyTag>(m_rows->size(), [&](std::size_t r) {
-      const std::size_t i = m_rows->node_of_row[r];
-      const double length = m_value4[i].norm();
-      // Opposite rotations of two handles cancel somewhere between them. The field is undefined
-      // there, and any rotation is valid.
-      if (length > 1e-12)
-        field[i].coeffs() = m_value4[i] / length;
-    });
+        store,
+        m_work4);
     if (field.size() > most_kept_nodes)
-      m_rhs4 = m_work4 = m_value4 = std::vector<Vec4>();
+      m_work4 = std::vector<Vec4>();
   }
 
   void blend_stage(const std::vector<Similarity>& transforms,
                    std::size_t stage,
                    std::vector<Quaternion>& field)
   {
-    m_value3.resize(field.size());
     solve_harmonic<ConcurrencyTag>(
         *m_factor,
         *m_graph,
@@ -173,15 +169,10 @@ private:
           const auto& turns = transforms[handle(i)].turns();
           return stage < turns.size() ? turns[stage] : Vec3(Vec3::Zero());
         },
-        m_memory->rhs,
-        m_memory->work,
-        m_value3);
-    pcs::internal::for_each_index<ConcurrencyTag>(m_rows->size(), [&](std::size_t r) {
-      const std::size_t i = m_rows->node_of_row[r];
-      field[i] = (rotation_exp(m_value3[i]) * field[i]).normalized();
-    });
-    if (field.size() > most_kept_nodes)
-      m_value3 = std::vector<Vec3>();
+        [&](std::size_t i, const Vec3& turn) {
+          field[i] = (rotation_exp(turn) * field[i]).normalized();
+        },
+        *m_work);
   }
 
   void intrinsic_step(std::vector<Quaternion>& field)
@@ -189,9 +180,7 @@ private:
     const auto rotation_at = [&](std::size_t j) {
       return m_constraints->is_prescribed(j) ? m_lifted[handle(j)] : field[j];
     };
-    std::vector<Vec3>& rhs = m_memory->rhs;
-    rhs.resize(m_rows->size());
-    pcs::internal::for_each_index<ConcurrencyTag>(m_rows->size(), [&](std::size_t r) {
+    const auto load = [&](std::size_t r) {
       const std::size_t i = m_rows->node_of_row[r];
       const Quaternion inverse = field[i].conjugate();
       Vec3 b = Vec3::Zero();
@@ -200,13 +189,15 @@ private:
       if (m_constraints->is_soft(i))
         b += m_constraints->soft_weight(i, node_degree(*m_graph, i)) *
              rotation_log(m_lifted[handle(i)] * inverse);
-      rhs[r] = b;
-    });
-    m_factor->solve<ConcurrencyTag>(rhs, m_memory->work);
-    pcs::internal::for_each_index<ConcurrencyTag>(m_rows->size(), [&](std::size_t r) {
-      Quaternion& q = field[m_rows->node_of_row[r]];
-      q = (rotation_exp(rhs[r]) * q).normalized();
-    });
+      return b;
+    };
+    m_factor->solve_each<ConcurrencyTag>(
+        load,
+        [&](std::size_t r, const Vec3& turn) {
+          Quaternion& q = field[m_rows->node_of_row[r]];
+          q = (rotation_exp(turn) * q).normalized();
+        },
+        *m_work);
   }
 
   const linear_algebra::Sparse_cholesky* m_factor = nullptr;
@@ -215,9 +206,8 @@ private:
   const Free_rows* m_rows = nullptr;
   std::vector<Quaternion> m_lifted;
   std::vector<char> m_has_nodes; ///< per handle
-  Solve_memory* m_memory = nullptr;
-  std::vector<Vec3> m_value3;
-  std::vector<Vec4> m_rhs4, m_work4, m_value4;
+  std::vector<Vec3>* m_work = nullptr;
+  std::vector<Vec4> m_work4;
 };
 
 } // namespace deformation

@@ -108,7 +108,7 @@ public:
     if (m_body.rest_points.has_normals())
       normal = m_body.rest_points.normal(place);
     const Vec3 position = m_rest_positions(m_body.input_of_place[place], [&] {
-      return m_body.frame.to_world(m_body.rest_points.position(place));
+      return m_body.frame.to_world(m_body.rest_of_place(place));
     });
     write(place, position, normal, Eigen::Matrix3d::Identity());
   }
@@ -120,8 +120,7 @@ public:
     if (m_body.rest_points.has_normals())
       normal = turn_normal(a, m_body.rest_points.normal(place));
     write(place,
-          m_body.frame.to_world(a * m_body.rest_points.position(place) +
-                                Eigen::Map<const Vec3>(map.t)),
+          m_body.frame.to_world(a * m_body.rest_of_place(place) + Eigen::Map<const Vec3>(map.t)),
           normal,
           a);
   }
@@ -132,7 +131,7 @@ private:
     Vec3 normal = Vec3::Zero();
     if (m_body.rest_points.has_normals())
       normal = t.rotation() * m_body.rest_points.normal(place);
-    Vec3 position = m_body.frame.to_world(t(m_body.rest_points.position(place)));
+    Vec3 position = m_body.frame.to_world(t(m_body.rest_of_place(place)));
     Eigen::Matrix3d gradient = t.scale() * t.rotation();
     m_corrections.apply(m_body.site_of_place[place], m_body.frame, position, normal, gradient);
     write(place, position, normal, gradient);

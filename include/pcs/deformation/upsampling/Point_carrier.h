@@ -31,8 +31,8 @@ namespace deformation {
   are then divided by the squared distances: the map of a sample is interpolated at its position,
   and the blended map is continuous.
 
-  The object is built once per rest shape, and needs 40 bytes per site. `sample_of_site` and
-  `sample_graph` must outlive it. Const functions may run concurrently. O(log n) per point for n
+  The object is built once per rest shape, and needs 40 bytes per site, and 30 per sample.
+  `sample_of_site` must outlive it. Const functions may run concurrently. O(log n) per point for n
   sites.
 */
 class Point_carrier
@@ -41,19 +41,19 @@ public:
   Point_carrier(std::vector<Vec3> sites,
                 std::vector<Vec3> samples,
                 const std::vector<std::uint32_t>& sample_of_site,
-                const Weighted_graph& sample_graph,
+                neighborhood::Proximity_graph sample_graph,
                 std::size_t number_of_sample_neighbors,
                 Sample_weights weights)
     : m_sites(std::move(sites)),
       m_samples(std::move(samples)),
       m_sample_of_site(sample_of_site),
-      m_sample_graph(sample_graph),
+      m_sample_graph(std::move(sample_graph)),
       m_k(number_of_sample_neighbors),
       m_weights(weights),
       m_nearest(m_sites)
   {
     if (m_samples.size() < m_sites.size()) // otherwise the rings would need most of the memory
-      m_rings = internal::sample_rings<CGAL::Sequential_tag>(sample_graph);
+      m_rings = internal::sample_rings<CGAL::Sequential_tag>(m_sample_graph);
   }
 
   Point_carrier(const Point_carrier&) = delete;
@@ -133,7 +133,7 @@ private:
 
   std::vector<Vec3> m_sites, m_samples;
   const std::vector<std::uint32_t>& m_sample_of_site;
-  const Weighted_graph& m_sample_graph;
+  neighborhood::Proximity_graph m_sample_graph;
   std::vector<std::vector<std::uint32_t>> m_rings;
   std::size_t m_k;
   Sample_weights m_weights;

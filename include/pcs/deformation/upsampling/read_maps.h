@@ -36,7 +36,8 @@ has_sample_beside(const Weighted_graph& graph, std::size_t sample, std::size_t n
 /// samples are the first nodes of the network.
 /// \param transforms of the handles, in the coordinates of the network
 /// \param targets offsets of the nodes of handles with targets; may be empty
-/// \param rest of the samples [L]
+/// \param rest of the nodes [L]
+/// \param count of the samples
 /// \param maps one for each sample, or empty before the call
 /// \param next memory for as many maps, or empty to save it: then every map is computed twice
 /// \param are_finite workspace
@@ -46,6 +47,7 @@ bool read_maps(const Elastic_state& state,
                const std::vector<Similarity>& transforms,
                const Node_targets& targets,
                const std::vector<Vec3>& rest,
+               std::size_t count,
                std::vector<Affine_map>& maps,
                std::vector<Affine_map>& next,
                std::vector<int>& are_finite)
@@ -57,7 +59,7 @@ bool read_maps(const Elastic_state& state,
       return 1;
     }
     const bool is_rigid = state.constraints.is_prescribed(s);
-    const bool is_measured = !is_rigid && has_sample_beside(state.network.surface, s, rest.size());
+    const bool is_measured = !is_rigid && has_sample_beside(state.network.surface, s, count);
     Eigen::Matrix3d a = is_measured ? state.deformation_gradient(s) : state.frame[s];
     // A prescribed map is bitwise that of the handle, unless this has targets.
     Vec3 t;
@@ -73,7 +75,7 @@ bool read_maps(const Elastic_state& state,
     return a.allFinite() && t.allFinite() ? 1 : 0;
   };
   const int is_finite = pcs::internal::blocked_reduce<ConcurrencyTag>(
-      rest.size(),
+      count,
       1,
       [&](std::size_t s) {
         Affine_map map;
@@ -85,7 +87,7 @@ bool read_maps(const Elastic_state& state,
   if (is_finite != 1)
     return false;
   if (next.empty()) {
-    maps.resize(rest.size());
+    maps.resize(count);
     pcs::internal::for_each_index<ConcurrencyTag>(maps.size(),
                                                   [&](std::size_t s) { read(s, maps[s]); });
   } else
