@@ -68,7 +68,8 @@ Table: one row per tree (CSV): tree, x, y, z (of the foot), radius, diameter_at_
 height, points, tile, parts (tiles whose cores have points of it), is_at_rim (it touches the outer
 rim of the buffer of its tile), cut_parts (other tiles where it does), file, crown_area (of the
 convex hull, in the plan, of the points at least --crown-base above the foot), crown_volume (sum of
-the areas of the convex hulls of layers of 0.5, times 0.5).
+the areas of the convex hulls of layers, times their height: 0.5 / 1.3 of the breast height, that is
+half a metre).
 Crowns: the convex hulls in the plan (GeoJSON polygons in the coordinates of the scan). There are no
 standard errors of crowns: how far single points lie outside a crown is not known.
 Points: all points of the plot in the order of `index`, with the property `tree` (-1: none). If the
@@ -128,6 +129,8 @@ void check(const Options& options)
   if (options.crown_base && !(*options.crown_base >= 0 && std::isfinite(*options.crown_base)))
     throw pcs::Invalid_input("--crown-base is " + std::to_string(*options.crown_base) +
                              ", expected a length of 0 or more");
+  if (options.crown_base && options.table.empty() && options.crowns.empty())
+    throw pcs::Invalid_input("--crown-base has no effect without --table or --crowns");
   if (options.tolerance && !(*options.tolerance >= 0 && std::isfinite(*options.tolerance)))
     throw pcs::Invalid_input("--tolerance is " + std::to_string(*options.tolerance) +
                              ", expected a length of 0 or more");
@@ -190,6 +193,11 @@ void make_folder(const std::string& folder)
     throw pcs::IO_error(folder, "is not a directory and cannot be made one");
 }
 
+std::string number(double value)
+{
+  return Ordered_json(value).dump(); // the shortest text that is read back as the same number
+}
+
 /// A tile whose result, or a block whose points could not be used.
 struct Failure
 {
@@ -204,10 +212,7 @@ struct Merged_plot
         failures.push_back({manifest.tiles()[t].file, reason});
       })
   {
-    double breast_height = 0;
-    for (const auto& result : tiles.results())
-      if (result)
-        breast_height = std::max(breast_height, result->breast_height);
+    breast_height = common_breast_height(manifest);
     if (!(breast_height > 0))
       throw pcs::IO_error(options.results,
                           "has no result of a tile of " + options.tiles + "; " +
@@ -216,7 +221,8 @@ struct Merged_plot
     trees = std::make_unique<Plot_trees>(manifest, tiles.results(), tolerance);
     count_points(manifest);
     if (!options.table.empty() || !options.crowns.empty()) {
-      const Plot_crowns found(manifest, tiles, *trees, options.crown_base.value_or(breast_height));
+      const double base = options.crown_base.value_or(breast_height);
+      const Plot_crowns found(manifest, tiles, *trees, base, breast_height);
       crowns = found.measures();
       for (std::size_t p = 0; p < crowns.size(); ++p)
         if (found.is_too_high()[p])
@@ -235,7 +241,7 @@ struct Merged_plot
 
   std::vector<Failure> failures; ///< filled while the tiles are read
   Labelled_tiles tiles;
-  double tolerance = 0; ///< of feet [L]
+  double breast_height = 0, tolerance = 0; ///< tolerance of feet [L]
   std::unique_ptr<Plot_trees> trees;
   std::unique_ptr<Labelled_blocks> blocks; ///< if all points of a thinned plot are wanted
   std::vector<Failure> failed_blocks;
@@ -247,6 +253,26 @@ struct Merged_plot
   std::size_t number_of_results = 0; ///< tiles with a result
 
 private:
+  /// Returns the breast height of all results; 0 without results. Throws if they differ.
+  double common_breast_height(const Tile_manifest& manifest) const
+  {
+    double height = 0;
+    std::size_t first = 0; // tile with a result
+    for (std::size_t t = 0; t < manifest.tiles().size(); ++t) {
+      const auto& result = tiles.results()[t];
+      if (result && height > 0 && result->breast_height != height)
+        throw pcs::Invalid_input(
+            manifest.tiles()[first].file + " was segmented with --breast-height " + number(height) +
+            ", but " + manifest.tiles()[t].file + " with " + number(result->breast_height) +
+            "; segment all tiles with the same breast height");
+      if (result && height == 0) {
+        height = result->breast_height;
+        first = t;
+      }
+    }
+    return height;
+  }
+
   void count_points(const Tile_manifest& manifest)
   {
     const double sign = manifest.up().front() == '-' ? -1 : 1;
@@ -284,9 +310,36 @@ std::string list(const std::vector<std::string>& items)
   return text + (items.size() > most ? ", ..." : "");
 }
 
-std::string number(double value)
+/// Returns whether a tree gets a file.
+bool has_file(const Options& options, std::uint64_t number_of_points)
 {
-  return Ordered_json(value).dump(); // the shortest text that is read back as the same number
+  return !options.folder.empty() &&
+         number_of_points >= static_cast<std::uint64_t>(options.min_points);
+}
+
+/// Adds warnings about the files of trees.
+void warn_of_files(const Options& options,
+                   const Merged_plot& plot,
+                   std::vector<std::string>& warnings)
+{
+  if (options.folder.empty())
+    return;
+  const auto small = std::count_if(plot.points.begin(), plot.points.end(), [&](std::uint64_t n) {
+    return !has_file(options, n);
+  });
+  if (small > 0)
+    warnings.push_back(std::to_string(small) + " of " + std::to_string(plot.points.size()) +
+                       " trees have fewer than --min-points " + std::to_string(options.min_points) +
+                       " points and get no file");
+  std::size_t others = 0;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(options.folder, error)) {
+    const std::string name = entry.path().filename().string();
+    others += Tree_files::is_name(name) && name >= Tree_files::name_of(plot.points.size());
+  }
+  if (others > 0)
+    warnings.push_back(options.folder + " has " + std::to_string(others) +
+                       " files of trees of another run; remove them");
 }
 
 std::vector<std::string>
@@ -300,7 +353,7 @@ all_warnings(const Tile_manifest& manifest, const Options& options, const Merged
   for (const Failure& failure : plot.failed_blocks)
     warnings.push_back("the points of " + failure.tile + " are missing in " + options.points +
                        ": " + failure.reason);
-  const std::string tolerance = Ordered_json(plot.tolerance).dump();
+  const std::string tolerance = number(plot.tolerance);
   std::vector<std::string> items;
   for (const auto& [t, k] : plot.trees->unmatched())
     items.push_back(std::to_string(k) + " of " + manifest.tiles()[t].file);
@@ -321,10 +374,10 @@ all_warnings(const Tile_manifest& manifest, const Options& options, const Merged
                        list(items) + "; look at them");
   if (!plot.trees_without_crown.empty())
     warnings.push_back(
-        std::to_string(plot.trees_without_crown.size()) +
-        " tree(s) have points more than 500000 above the foot, so their crowns are not "
-        "measured: " +
-        list(plot.trees_without_crown) + "; remove these points from the scans");
+        std::to_string(plot.trees_without_crown.size()) + " tree(s) have points more than " +
+        number(Plot_crowns::most_layers * Plot_crowns::layer_height(plot.breast_height)) +
+        " above the foot, so their crowns are not measured: " + list(plot.trees_without_crown) +
+        "; remove these points from the scans");
   items.clear();
   for (const auto& [a, b] : plot.trees->twins())
     items.push_back(std::to_string(a) + " and " + std::to_string(b));
@@ -342,25 +395,8 @@ all_warnings(const Tile_manifest& manifest, const Options& options, const Merged
         std::to_string(items.size()) +
         " tree(s) touch the outer rim of the buffer of their tile, and may be cut: " + list(items) +
         "; segment these tiles again with a larger --buffer of tile_points");
-  if (!options.folder.empty()) {
-    std::size_t others = 0;
-    std::error_code error;
-    for (const auto& entry : std::filesystem::directory_iterator(options.folder, error)) {
-      const std::string name = entry.path().filename().string();
-      others += Tree_files::is_name(name) && name >= Tree_files::name_of(plot.points.size());
-    }
-    if (others > 0)
-      warnings.push_back(options.folder + " has " + std::to_string(others) +
-                         " files of trees of another run; remove them");
-  }
+  warn_of_files(options, plot, warnings);
   return warnings;
-}
-
-/// Returns whether a tree gets a file.
-bool has_file(const Options& options, std::uint64_t number_of_points)
-{
-  return !options.folder.empty() &&
-         number_of_points >= static_cast<std::uint64_t>(options.min_points);
 }
 
 std::string table_of(const Tile_manifest& manifest, const Options& options, const Merged_plot& plot)

@@ -167,7 +167,7 @@ struct Merge_run : Program_run
             row["buffered"][corner][axis];
       }
     result.number_of_core_points = rows.size();
-    result.breast_height = 1.3;
+    result.breast_height = breast_height;
     Table core = all.select(rows);
     core.remove_property("is_core");
     core.add_property("tree", tree);
@@ -192,6 +192,7 @@ struct Merge_run : Program_run
   std::vector<std::array<double, 3>> feet;
   std::map<std::size_t, std::array<double, 3>> first_foot_in; ///< foot of tree 0, by tile
   bool has_samples = false;
+  double breast_height = 1.3;        ///< of the results
   std::optional<std::size_t> hidden; ///< a tree that its owner does not find
   std::string tile_folder = "tiles";
   std::vector<std::int32_t> trees; ///< of the points of the plot
@@ -557,6 +558,43 @@ BOOST_AUTO_TEST_CASE(crowns_begin_at_the_given_height)
   BOOST_TEST(std::stod(rows[4][14]) == pcs::crowns::measure_crown(of_tree, feet[3][2] + 6).volume);
 }
 
+BOOST_AUTO_TEST_CASE(layers_of_crowns_have_the_unit_of_the_breast_height)
+{
+  breast_height = 2.6;
+  write_results("results", 1);
+  BOOST_TEST_REQUIRE(run("--tiles tiles/tiles.json --results results --table t.csv") == 0, err);
+  const auto rows = table("t.csv");
+  std::vector<Table::Point_3> of_tree;
+  for (std::size_t i = 0; i < trees.size(); ++i)
+    if (trees[i] == 3)
+      of_tree.push_back(plot.points()[i]);
+  const auto crown = pcs::crowns::measure_crown(of_tree, feet[3][2] + 2.6, 1.0);
+  BOOST_TEST(std::stod(rows[4][14]) == crown.volume);
+}
+
+BOOST_AUTO_TEST_CASE(tiles_with_different_breast_heights_are_refused)
+{
+  write_results("results", 1);
+  breast_height = 0.4;
+  write_result("results", 1, 0.1);
+  BOOST_TEST(run("--tiles tiles/tiles.json --results results --table t.csv") == 1);
+  BOOST_TEST(err.find(name_of(0) + " was segmented with --breast-height 1.3, but " + name_of(1) +
+                      " with 0.4") != std::string::npos,
+             err);
+  BOOST_TEST(!exists("t.csv"));
+}
+
+BOOST_AUTO_TEST_CASE(trees_without_a_file_are_counted)
+{
+  write_results("results", 1);
+  BOOST_TEST_REQUIRE(run("--tiles tiles/tiles.json --results results --folder trees "
+                         "--min-points 100000") == 0,
+                     err);
+  BOOST_TEST(err.find("12 of 12 trees have fewer than --min-points 100000 points") !=
+                 std::string::npos,
+             err);
+}
+
 BOOST_AUTO_TEST_CASE(a_point_far_above_a_tree_leaves_only_this_crown_out)
 {
   write_results("results", 1);
@@ -628,6 +666,7 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused)
   refuses(inputs + "--table t.csv --tolerance -1", "--tolerance");
   refuses(inputs + "--table t.csv --crown-base -1", "--crown-base");
   refuses(inputs + "--table t.csv --crown-base nan", "--crown-base");
+  refuses(inputs + "--points p.ply --crown-base 2", "--crown-base has no effect");
   refuses(inputs + "--table t.csv --crowns t.csv", "same file");
   refuses(inputs + "--table t.csv --open-files 1", "--open-files");
   refuses(inputs + "--table t.csv --folder file", "directory");

@@ -11,6 +11,7 @@
 #include "tiling/horizontal.h"
 #include <pcs/IO/Point_reader.h>
 #include <pcs/IO/points/Point_table.h>
+#include <pcs/core/Skeleton_options.h>
 #include <pcs/crowns/Crown_layers.h>
 
 #include <nlohmann/json.hpp>
@@ -24,7 +25,8 @@ namespace program {
 
 /*!
   The crown of a tree consists of its points at or above a height above the foot. A tree with a
-  point too far above its foot, which is no point of a tree, has no crown. Trees are measured in
+  point too far above its foot, which is no point of a tree, has no crown. The height of layers
+  scales with breast height, so that volumes do not depend on the unit. Trees are measured in
   groups in the order of their tiles, and only the tiles with points of a group are read for it.
 */
 class Plot_crowns
@@ -35,16 +37,18 @@ public:
   /// Largest height above the base of a crown, in heights of a layer [-].
   static constexpr double most_layers = 1e6;
 
-  /// `base`: height above the foot [L].
+  /// `base`: height above the foot [L]; `breast_height`: of the results [L].
   Plot_crowns(const Tile_manifest& manifest,
               const Labelled_tiles& tiles,
               const Plot_trees& trees,
-              double base)
+              double base,
+              double breast_height)
     : m_manifest(manifest),
       m_tiles(tiles),
       m_trees(trees),
       m_sign(manifest.up().front() == '-' ? -1 : 1),
       m_base(base),
+      m_layer_height(layer_height(breast_height)),
       m_measures(trees.trees().size()),
       m_is_too_high(m_measures.size(), false)
   {
@@ -56,6 +60,12 @@ public:
     });
     for (std::size_t first = 0; first < order.size(); first += group_size)
       measure(order, first, std::min(order.size(), first + group_size));
+  }
+
+  /// Returns the height of a layer: half a metre if breast height is the default in metres [L].
+  static double layer_height(double breast_height)
+  {
+    return breast_height * pcs::crowns::default_layer_height / pcs::default_breast_height;
   }
 
   /// Returns the crowns of the trees of the plot.
@@ -71,7 +81,7 @@ private:
     std::vector<std::size_t> place(m_measures.size(), end); // of each tree in `order`
     for (std::size_t w = first; w < end; ++w) {
       place[order[w]] = w;
-      layers.emplace_back(base_of(order[w]));
+      layers.emplace_back(base_of(order[w]), m_layer_height);
     }
     for (std::size_t t = 0; t < m_tiles.results().size(); ++t) {
       const std::vector<std::size_t> place_of = places_in_group(m_tiles, m_trees, t, place, end);
@@ -107,7 +117,7 @@ private:
         const std::size_t place = place_of[static_cast<std::size_t>(trees[i])];
         const std::size_t tree = order[place];
         const double height = m_sign * p[static_cast<int>(axis_up)];
-        if (!(height - base_of(tree) <= most_layers * pcs::crowns::default_layer_height))
+        if (!(height - base_of(tree) <= most_layers * m_layer_height))
           m_is_too_high[tree] = true;
         if (!m_is_too_high[tree])
           layers[place - first].add(horizontal(p, axis_up), height);
@@ -118,7 +128,7 @@ private:
   const Tile_manifest& m_manifest;
   const Labelled_tiles& m_tiles;
   const Plot_trees& m_trees;
-  double m_sign, m_base;
+  double m_sign, m_base, m_layer_height;
   std::vector<pcs::crowns::Crown_measures> m_measures;
   std::vector<bool> m_is_too_high; ///< by tree of the plot
 };
