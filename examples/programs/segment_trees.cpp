@@ -8,15 +8,17 @@
 #include "common/check_output.h"
 #include "common/run_program.h"
 #include "common/up_direction.h"
+#include "scan/Files_of_trees.h"
 #include "scan/rays_without_return.h"
+#include "scan/scan_height.h"
 #include "scan/tree_foot.h"
 #include "tiling/Tile_result.h"
 #include "tiling/Tile_segmentation.h"
-#include <pcs/IO/internal/extensions.h>
 #include <pcs/IO/points/Point_table.h>
 #include <pcs/IO/read_points.h>
 #include <pcs/IO/write_points.h>
 #include <pcs/core/errors.h>
+#include <pcs/internal/unit_of_height.h>
 #include <pcs/segment_trees.h>
 
 #include <CGAL/Simple_cartesian.h>
@@ -28,6 +30,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -58,7 +61,8 @@ const char* help()
 asc, pts, pwn), also compressed by gzip (.gz) if built with zlib.
 Folder: DIR/SCAN_1.ply, DIR/SCAN_2.ply, ..., trees with the thickest stems first, with all
 properties of their points and the foot of the tree as a comment. extract_tree_skeleton reads the
-foot, and processes all files with its own --folder.
+foot, and processes all files with its own --folder. Files of trees of an earlier run are replaced,
+but no other files.
 Points: the scan with the property `tree` (-1: ground, or not part of a tree).
 Tile results: for a tile of tile_points, in the folder of its tiles.json. DIR/NAME.ply has the
 points of the core with all properties and `tree`, DIR/NAME.json the trees with their feet, and
@@ -97,14 +101,6 @@ void declare(CLI::App& app, Options& options)
   app.add_flag("--quiet", options.is_quiet, "print errors only");
 }
 
-/// Returns the path of the file of a tree; numbers begin with 1.
-std::string file_of_tree(const Options& options, std::size_t tree)
-{
-  const std::filesystem::path scan(pcs::IO::internal::without_gz(options.input));
-  const std::string name = scan.stem().string() + "_" + std::to_string(tree + 1) + ".ply";
-  return (std::filesystem::path(options.folder) / name).string();
-}
-
 void make_folder(const std::string& folder)
 {
   std::error_code error;
@@ -113,8 +109,39 @@ void make_folder(const std::string& folder)
     throw pcs::IO_error(folder, "is not a directory and cannot be made one");
 }
 
+/// Returns which trees get a file.
+std::vector<bool> trees_with_file(const Options& options, const pcs::Segmentation_report& r)
+{
+  std::vector<bool> result;
+  for (const pcs::Segmented_tree& tree : r.trees)
+    result.push_back(!options.folder.empty() && tree.number_of_points >= options.min_points);
+  return result;
+}
+
+/// Returns warnings about the files of trees.
+std::vector<std::string> warnings_of_files(const Options& options,
+                                           const pcs::Segmentation_report& r)
+{
+  std::vector<std::string> sentences;
+  if (options.folder.empty())
+    return sentences;
+  const std::vector<bool> has_file = trees_with_file(options, r);
+  const auto small = std::count(has_file.begin(), has_file.end(), false);
+  if (small > 0)
+    sentences.push_back(std::to_string(small) + " of " + std::to_string(has_file.size()) +
+                        " trees have fewer than --min-points " +
+                        std::to_string(options.min_points) + " points and get no file");
+  const std::size_t others =
+      Files_of_trees(options.input, options.folder).number_of_others(has_file);
+  if (others > 0)
+    sentences.push_back(options.folder + " has " + std::to_string(others) +
+                        " files of trees of another run of this scan; remove them");
+  return sentences;
+}
+
 nlohmann::ordered_json to_json(const Options& options, const pcs::Segmentation_report& r)
 {
+  const std::vector<bool> has_file = trees_with_file(options, r);
   nlohmann::ordered_json trees = nlohmann::ordered_json::array();
   for (std::size_t t = 0; t < r.trees.size(); ++t) {
     const pcs::Segmented_tree& tree = r.trees[t];
@@ -124,8 +151,8 @@ nlohmann::ordered_json to_json(const Options& options, const pcs::Segmentation_r
                                   {"diameter_at_breast_height", tree.diameter_at_breast_height},
                                   {"height", tree.height},
                                   {"points", tree.number_of_points}};
-    if (!options.folder.empty() && tree.number_of_points >= options.min_points)
-      row["file"] = file_of_tree(options, t);
+    if (has_file[t])
+      row["file"] = Files_of_trees(options.input, options.folder).path_of(t);
     trees.push_back(row);
   }
   return {{"input", options.input},
@@ -195,14 +222,16 @@ void write_trees(const pcs::IO::Point_table& table,
   for (std::size_t i = 0; i < trees.size(); ++i)
     if (trees[i] >= 0)
       points[next[static_cast<std::size_t>(trees[i])]++] = static_cast<std::uint32_t>(i);
+  const Files_of_trees files(options.input, options.folder);
+  const std::vector<bool> has_file = trees_with_file(options, report);
   for (std::size_t t = 0; t < report.trees.size(); ++t)
-    if (report.trees[t].number_of_points >= options.min_points) {
+    if (has_file[t]) {
       const auto begin = points.begin();
       const std::vector<std::size_t> chosen(begin + static_cast<std::ptrdiff_t>(first[t]),
                                             begin + static_cast<std::ptrdiff_t>(first[t + 1]));
       pcs::IO::Point_table tree = table.select(chosen);
       write_foot(report.trees[t].foot, tree);
-      pcs::IO::write_points(file_of_tree(options, t), tree);
+      pcs::IO::write_points(files.path_of(t), tree);
     }
 }
 
@@ -256,11 +285,39 @@ std::vector<std::string> write_tile(const Tile_segmentation& tile,
   return warnings;
 }
 
+/// Checks that the results can be written.
+void check_outputs(const Options& options, const pcs::IO::Point_table& table)
+{
+  if (!options.folder.empty()) {
+    make_folder(options.folder);
+    check_output(Files_of_trees(options.input, options.folder).path_of(0), table.schema());
+  }
+  if (!options.points.empty()) {
+    pcs::IO::Point_table labelled(table.schema());
+    labelled.add_property("tree", std::vector<std::int32_t>());
+    check_output(options.points, labelled.schema());
+  }
+}
+
+/// Warns before the work, which takes long if the scan has another unit than breast height.
+void warn_of_height(const Options& options, double height)
+{
+  std::vector<std::string> sentences;
+  pcs::internal::warn_of_unit("the scan", height, options.breast_height, sentences);
+  for (const std::string& sentence : sentences)
+    if (!options.is_quiet)
+      std::cerr << "segment_trees: warning: " << options.input << ": " << sentence << std::endl;
+}
+
 void run(Options& options)
 {
   if (options.folder.empty() && options.points.empty() && options.report.empty() &&
       options.tile_results.empty())
     throw pcs::Invalid_input("one of --folder, --points, --report and --tile-results is required");
+  const Files_of_trees files_of_trees(options.input, options.folder);
+  if (!options.folder.empty())
+    for (const std::string& path : {options.points, options.report})
+      files_of_trees.check_result(path);
   Distinct_files files;
   files.add_input(options.input);
   files.add_output(options.points);
@@ -273,22 +330,22 @@ void run(Options& options)
   const std::size_t number_of_empty_rays = remove_rays_without_return(table);
   if (table.has_property("tree"))
     table.remove_property("tree");
-  if (!options.folder.empty()) {
-    make_folder(options.folder);
-    check_output(file_of_tree(options, 0), table.schema());
-  }
-  if (!options.points.empty()) {
-    pcs::IO::Point_table labelled(table.schema());
-    labelled.add_property("tree", std::vector<std::int32_t>());
-    check_output(options.points, labelled.schema());
-  }
+  check_outputs(options, table);
+  const double height = scan_height(table, options.up.value_or("z"));
+  warn_of_height(options, height);
 
   std::vector<std::int32_t> trees;
   const pcs::Segmentation_report report = segment_scan(table, options, trees);
   if (report.status != pcs::Status::converged && !tile)
     throw pcs::Invalid_input(options.input + ": no stem was found in this scan (" +
-                             std::to_string(report.number_of_points) + " points)");
+                             std::to_string(report.number_of_points) +
+                             " points); fallen trees and stumps are no stems; " +
+                             advice_of_height(height, options.breast_height));
+  if (!options.folder.empty())
+    files_of_trees.check_replaced(trees_with_file(options, report));
   nlohmann::ordered_json json = to_json(options, report);
+  for (const std::string& warning : warnings_of_files(options, report))
+    json["warnings"].push_back(warning);
   if (tile)
     for (const std::string& warning : write_tile(*tile, table, trees, report))
       json["warnings"].push_back(warning);

@@ -134,10 +134,10 @@ BOOST_AUTO_TEST_CASE(trees_have_heights_and_a_wrong_unit_is_noticed)
   for (const auto& p : points)
     in_millimetres.emplace_back(1000 * p.x(), 1000 * p.y(), 1000 * p.z());
   pcs::IO::write_points(path("millimetres.ply"), in_millimetres);
-  if (run("--input millimetres.ply --report report.json") == 0)
-    BOOST_TEST(err.find("another unit") != std::string::npos, err);
-  else
-    BOOST_TEST(err.find("no stem") != std::string::npos, err);
+  if (run("--input millimetres.ply --report report.json") != 0)
+    BOOST_TEST(err.find("check the unit of --breast-height") != std::string::npos, err);
+  BOOST_TEST(err.find("the scan is ") != std::string::npos, err); // before the work
+  BOOST_TEST(err.find("another unit") != std::string::npos, err);
 }
 
 BOOST_AUTO_TEST_CASE(names_of_files_need_not_be_utf_8)
@@ -310,6 +310,33 @@ BOOST_AUTO_TEST_CASE(small_trees_get_no_file)
   const int code = run("--input stand.ply --folder trees --min-points 100000000");
   BOOST_TEST_REQUIRE(code == 0, err);
   BOOST_TEST(!exists("trees/stand_1.ply"));
+  BOOST_TEST(err.find("2 of 2 trees have fewer than --min-points 100000000 points") !=
+                 std::string::npos,
+             err);
+}
+
+BOOST_AUTO_TEST_CASE(only_files_of_trees_are_replaced)
+{
+  const std::string call = "--input stand.ply --folder trees";
+  BOOST_TEST_REQUIRE(run(call) == 0, err);
+  BOOST_TEST(err.empty(), err);
+  std::filesystem::copy_file(path("trees/stand_1.ply"), path("trees/stand_3.ply"));
+  std::filesystem::copy_file(path("stand.ply"), path("trees/stand_2026.ply")); // another scan
+  BOOST_TEST_REQUIRE(run(call) == 0, err); // replaces the first two
+  BOOST_TEST(err.find("trees has 1 files of trees of another run") != std::string::npos, err);
+  BOOST_TEST((content("trees/stand_2026.ply") == content("stand.ply")));
+  for (const char* option : {" --points ", " --report "}) {
+    BOOST_TEST(run(call + option + "trees/../trees/stand_7.ply") == 1, option);
+    BOOST_TEST(err.find("name of a file of a tree") != std::string::npos, err);
+  }
+  const std::string first = content("trees/stand_1.ply");
+  write("trees/stand_2.ply", content("stand.ply"));
+  BOOST_TEST(run(call + " --points p.ply --report r.json") == 1);
+  BOOST_TEST(err.find("stand_2.ply exists and is no file of a tree") != std::string::npos, err);
+  BOOST_TEST((content("trees/stand_2.ply") == content("stand.ply")));
+  BOOST_TEST((content("trees/stand_1.ply") == first));
+  BOOST_TEST(!exists("p.ply"));
+  BOOST_TEST(!exists("r.json"));
 }
 
 BOOST_AUTO_TEST_CASE(bad_input_is_refused)
@@ -328,6 +355,7 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused)
   refuses("--input missing.ply --folder trees", "missing.ply");
   refuses("--input empty.ply --folder trees", "empty.ply");
   refuses("--input floor.xyz --folder trees", "no stem");
+  refuses("--input floor.xyz --folder trees", "0 times breast height; check the unit");
   refuses("--input stand.ply --folder file", "directory");
   refuses("--input stand.ply --points stand.ply", "stand.ply");
   refuses("--input stand.ply --folder trees --breast-height 0", "breast_height");
