@@ -131,7 +131,8 @@ struct Skeleton_report
   //! fraction of the scanned area on leaf blades, if these decided on the method; otherwise 0 [-]
   double blade_fraction = 0;
 
-  //! from the root to the highest node or leaf, along the up direction [L]
+  //! from the root along the up direction to the highest node, or to the highest leaves if leaves
+  //! were found in the scan; leaves labelled by `wood_map` do not count [L]
   double height = 0;
   //! height of the root above the lowest points of the tree, leaves included [L]
   double root_elevation = 0;
