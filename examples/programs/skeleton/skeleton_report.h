@@ -15,14 +15,17 @@
 
 namespace program {
 
-/// Converts a warning of the library: replaces named parameters by options of the program.
+/// Converts a warning or error of the library: replaces named parameters by options of the program.
 inline std::string in_options(std::string sentence)
 {
   for (const auto& [parameter, option] :
        {std::make_pair("do_remove_leaves(true)", "--remove-leaves"),
         std::make_pair("do_remove_leaves(false)", "--keep-leaves"),
         std::make_pair("do_continue_trunk(false)", "--keep-trunk"),
+        std::make_pair("do_register_stations(false)", "--keep-stations"),
         std::make_pair("root_position", "--root"),
+        std::make_pair("given_skeleton", "--skeleton"),
+        std::make_pair("unit of breast_height", "unit of --breast-height"),
         std::make_pair("skeleton_method(level_sets)", "--method level_sets"),
         std::make_pair("skeleton_method(chains)", "--method chains"),
         std::make_pair("breast height, which", "--breast-height, which")}) {

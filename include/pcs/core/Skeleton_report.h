@@ -111,6 +111,8 @@ struct Skeleton_report
   //! largest station shift that was estimated but rejected, because it is too large for an error of
   //! registration or a station has too few points; 0: none [L]
   double rejected_station_shift = 0;
+  //! whether the stations of this shift were detected by their scan grids, not given
+  bool is_rejected_station_detected = false;
   std::size_t number_of_nodes = 0;    ///< [count]
   std::size_t number_of_branches = 0; ///< [count]
 
@@ -136,8 +138,9 @@ struct Skeleton_report
   double height = 0;
   //! height of the root above the lowest points of the tree, leaves included [L]
   double root_elevation = 0;
-  bool is_root_given = false;   ///< whether `root_position` was given
-  double max_root_distance = 0; ///< from the root to the farthest node [L]
+  bool is_root_given = false;     ///< whether `root_position` was given
+  bool is_skeleton_given = false; ///< whether `given_skeleton` was given
+  double max_root_distance = 0;   ///< from the root to the farthest node [L]
   //! inferred length of the trunk at the top of the tree, where leaves hide it; 0: none was
   //! inferred [L]
   double hidden_trunk_length = 0;

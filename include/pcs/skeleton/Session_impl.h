@@ -46,6 +46,7 @@ Session<ConcurrencyTag>::Session(std::vector<Vec3> input,
   if (options.method != Skeleton_method::automatic)
     m_state->report.method = options.method;
   m_state->report.is_root_given = options.root.has_value();
+  m_state->report.is_skeleton_given = options.given.has_value();
   m_state->options = std::move(options);
 }
 

@@ -138,7 +138,13 @@ BOOST_AUTO_TEST_CASE(implausible_results_say_so)
   report.root_elevation = 4.6;
   BOOST_TEST(warns_of(report, "the root is 4.6 above the lowest points: the foot"));
   report.is_root_given = true;
-  BOOST_TEST(warns_of(report, "points below the given root_position are not part"));
+  BOOST_TEST(warns_of(report, "points below the given root are not part"));
+  report = plausible_tree();
+  report.height = 0.05; // a stem on the ground
+  report.root_elevation = 0.15;
+  BOOST_TEST(!warns_of(report, "the root is"));
+  report.root_elevation = 0.25;
+  BOOST_TEST(warns_of(report, "the foot of the tree may be missing"));
   report = plausible_tree();
   report.stem_diameters = {0.2, 0.15};
   BOOST_TEST(warns_of(report, "2 stems with diameters of 0.2, 0.15"));
@@ -151,6 +157,22 @@ BOOST_AUTO_TEST_CASE(implausible_results_say_so)
   BOOST_TEST(warns_of(report, "32-bit floating-point"));
   report.voxel_size = 0.5; // reported as the cause
   BOOST_TEST(!warns_of(report, "32-bit floating-point"));
+}
+
+BOOST_AUTO_TEST_CASE(warnings_name_a_way_that_is_open)
+{
+  pcs::Skeleton_report report = plausible_tree();
+  report.rejected_station_shift = 0.1;
+  BOOST_TEST(warns_of(report, "check that the labels denote scanner stations"));
+  report.is_rejected_station_detected = true; // there are no labels
+  BOOST_TEST(!warns_of(report, "labels"));
+  BOOST_TEST(warns_of(report, "check the unit of breast_height, or use do_register_stations"));
+  report = plausible_tree();
+  report.residual = 0.1;
+  BOOST_TEST(warns_of(report, "this may be no tree (skeleton_method(level_sets)"));
+  report.is_skeleton_given = true; // which only the method `chains` takes
+  BOOST_TEST(!warns_of(report, "skeleton_method"));
+  BOOST_TEST(warns_of(report, "check that the given skeleton is of this scan"));
 }
 
 BOOST_AUTO_TEST_CASE(reach_is_the_way_to_the_farthest_node)

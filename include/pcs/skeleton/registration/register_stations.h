@@ -88,6 +88,7 @@ public:
     }
     if (!is_plausible || largest > max_shift) {
       report.rejected_station_shift = largest;
+      report.is_rejected_station_detected = !m_grids.empty();
       return;
     }
     report.stations = std::move(found);

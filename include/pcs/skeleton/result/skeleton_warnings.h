@@ -62,8 +62,11 @@ inline void warn_of_points(const Skeleton_report& r, std::vector<std::string>& s
     sentences.push_back("the stations would have to move by up to " +
                         short_text(r.rejected_station_shift) +
                         ", too far for an error of registration, or have too few points, so no "
-                        "points were moved; check that the labels denote scanner stations, not "
-                        "flight lines");
+                        "points were moved; " +
+                        (r.is_rejected_station_detected
+                             ? "check the unit of breast_height, or use "
+                               "do_register_stations(false)"
+                             : "check that the labels denote scanner stations, not flight lines"));
   if (r.is_in_rows)
     sentences.push_back("the points lie in sparse rows, in which leaves cannot be separated from "
                         "wood; all points are kept (do_remove_leaves(true) removes leaves)");
@@ -83,6 +86,13 @@ inline void warn_of_precision(const Skeleton_report& r, std::vector<std::string>
              ? ", as 32-bit floating-point numbers far from the origin are; export the scan in "
                "double precision, or subtract an offset before it is stored"
              : "; branches that are not several times as thick are rough guesses"));
+}
+
+/// Returns the diameter of a cylinder with the length and volume of the trunk.
+inline double trunk_diameter(const Skeleton_report& r)
+{
+  const Branch_totals& trunk = r.by_order.front();
+  return 2 * std::sqrt(trunk.volume / (pcs::internal::pi * trunk.length));
 }
 
 /// Adds warnings about an implausible tree.
@@ -110,16 +120,19 @@ inline void warn_of_shape(const Skeleton_report& r, std::vector<std::string>& se
         " % of the scanned area are sheets that are large compared with the plant, as "
         "leaf blades are: each has one axis, and diameters and volume are those of "
         "flat sections (skeleton_method(chains) fits cylinders to wood)");
-  const auto& trunk = r.by_order.front();
-  const double diameter = 2 * std::sqrt(trunk.volume / (pcs::internal::pi * trunk.length));
+  const double diameter = trunk_diameter(r);
   if (r.status == Status::converged && r.method != Skeleton_method::level_sets && // no surfaces
       r.residual > std::max({max_residual * r.noise, exact * r.spacing, oval * diameter}))
-    sentences.push_back("half of the points lie far from the surfaces found; this may be no tree "
-                        "(skeleton_method(level_sets) is for plants with leaf blades)");
+    sentences.push_back(std::string("half of the points lie far from the surfaces found; ") +
+                        (r.is_skeleton_given
+                             ? "check that the given skeleton is of this scan, in its coordinates "
+                               "and unit"
+                             : "this may be no tree (skeleton_method(level_sets) is for plants "
+                               "with leaf blades)"));
   if (diameter < min_trunk_ratio * r.height)
     sentences.push_back("the trunk is too thin for the height; the scan may show too little of it, "
                         "or wood was classified as leaves (do_remove_leaves(false) keeps it)");
-  if (diameter > max_trunk_ratio * trunk.length)
+  if (diameter > max_trunk_ratio * r.by_order.front().length)
     sentences.push_back("the trunk is shorter than five of its diameters; this may be no tree");
   else if (r.total.volume > max_wood * std::pow(r.max_root_distance, 3))
     sentences.push_back("there is more wood than a tree of this size has; this may be no tree");
@@ -136,10 +149,11 @@ inline void warn_of_stems(const Skeleton_report& r, std::vector<std::string>& se
     sentences.push_back("leaves hide the upper " + short_text(r.hidden_trunk_length) +
                         " of the trunk, which is inferred: it is continued straight to the "
                         "top of the tree (do_continue_trunk(false) keeps it as it was found)");
-  if (r.root_elevation > max_elevation * (r.root_elevation + r.height))
+  // the axis of a lying stem is one radius above its underside
+  if (r.root_elevation > std::max(max_elevation * (r.root_elevation + r.height), trunk_diameter(r)))
     sentences.push_back("the root is " + short_text(r.root_elevation) +
-                        (r.is_root_given
-                             ? " above the lowest points: points below the given root_position "
+                        (r.is_root_given || r.is_skeleton_given
+                             ? " above the lowest points: points below the given root "
                                "are not part of the result"
                              : " above the lowest points: the foot of the tree may be missing "
                                "from the result (root_position selects the foot)"));
