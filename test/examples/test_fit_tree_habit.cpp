@@ -142,6 +142,12 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_and_touches_no_file)
   refuses("--habit habit.json --grow 2", "--grow and --output belong together");
   refuses("--habit habit.json --grow 1 -o tree_1.swc --score tree_1.swc", "named twice");
   refuses("--habit habit.json --grow 1 -o habit.json", "named twice");
+  for (const char* option : {"--smallest-radius 0.2", "--unit mm"})
+    refuses("--habit habit.json --score other.swc " + std::string(option), "requires --input");
+  for (const char* option : {"--height 5", "--height-spread 0.1", "--age 0.2", "--distance 9"})
+    refuses("--habit habit.json --score other.swc " + std::string(option), "requires --grow");
+  for (const char* option : {"--stations foo", "--step-degrees 3"})
+    refuses("--habit habit.json --score other.swc " + std::string(option), "requires --complete");
   refuses("--habit new.json --input missing.swc", "missing.swc");
   refuses("--habit habit.json --grow 1 -o a.swc --age 2", "age");
   refuses("--habit none.json --grow 1 -o a.swc", "none.json: cannot be opened");

@@ -89,6 +89,7 @@ inline void declare(CLI::App& app, Habit_options& o)
   app.add_option("--smallest-radius", o.smallest_radius, "thinner parts are left out")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str()
+      ->needs("--input")
       ->group(fit);
   app.add_option("--radius-error", o.radius_error, "relative standard error of the radii")
       ->check(CLI::Range(0.0, 1.0))
@@ -96,6 +97,7 @@ inline void declare(CLI::App& app, Habit_options& o)
       ->group(fit);
   app.add_option("--unit", o.unit, "name of the unit of length, for the file")
       ->capture_default_str()
+      ->needs("--input")
       ->group(fit);
 
   const char* grow = "Growth";
@@ -105,15 +107,19 @@ inline void declare(CLI::App& app, Habit_options& o)
   app.add_option("-o,--output", o.output, "the grown trees (SWC), see below")->group(grow);
   app.add_option("--height", o.height, "mean length of the trunks; 0: as measured")
       ->check(CLI::NonNegativeNumber)
+      ->needs("--grow")
       ->group(grow);
   app.add_option("--height-spread", o.height_spread, "standard deviation of ln(height)")
       ->check(CLI::Range(0.0, 1.0))
+      ->needs("--grow")
       ->group(grow);
   app.add_option("--age", o.age, "fraction of the final age, or a range")
       ->expected(1, 2)
+      ->needs("--grow")
       ->group(grow);
   app.add_option("--distance", o.distance, "least distance of trunks; 0: all at the origin")
       ->check(CLI::NonNegativeNumber)
+      ->needs("--grow")
       ->group(grow);
 
   const char* hidden = "Hidden wood";
@@ -123,9 +129,11 @@ inline void declare(CLI::App& app, Habit_options& o)
       ->group(hidden);
   app.add_option("--stations", o.stations, "property with the station of each point, from 0")
       ->capture_default_str()
+      ->needs("--complete")
       ->group(hidden);
   app.add_option("--step-degrees", o.step_degrees, "angle between beams; 0: estimated")
       ->check(CLI::NonNegativeNumber)
+      ->needs("--complete")
       ->group(hidden);
   app.add_option("--inferred", o.inferred, "write the inferred branches here (SWC)")->group(hidden);
 
