@@ -145,7 +145,8 @@ void run(Scan_options& options)
                      }));
   progress.clear();
   if (report.status != pcs::Status::converged)
-    throw pcs::Invalid_input("no beam met the tree; nothing was written");
+    throw pcs::Invalid_input("no beam met the tree, nothing was written; lower --step-degrees or "
+                             "--distance");
 
   const nlohmann::ordered_json json = report_of(options, tree, scan, report);
   pcs::IO::write_points(options.output, table_of(scan));

@@ -154,6 +154,9 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_and_touches_no_file)
   refuses(*this, "--output scan.ply --leaves 1e18", "more than 1e7 leaves");
   refuses(*this, "--output scan.ply --tree missing.swc", "missing.swc: there is no such file");
   refuses(*this, "--output scan.ply --tree in.ply", "in.ply: line 1");
+  write("mm.swc", "1 0 0 0 0 70 -1\n2 0 0 0 3000 20 1\n"); // 10 is inside the trunk
+  refuses(*this, "--output scan.ply --tree mm.swc", "station 0 is inside the trunk; `distance`");
+  refuses(*this, "--output scan.ply --distance 1e6", "lower --step-degrees or --distance");
   refuses(*this, "--output scan.ply --truth scan.ply", "the same file");
   refuses(*this, "--output scan.ply --truth ./scan.ply", "the same file");
   refuses(*this, "--output a.ply --tree scan.ply --swc scan.ply", "the same file");

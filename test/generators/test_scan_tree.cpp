@@ -379,6 +379,12 @@ BOOST_AUTO_TEST_CASE(senseless_scanners_are_refused_and_name_the_value)
   refuses([&](auto& s) { s.posts = {{0, 0, 0, 1}}; }, "posts");
   refuses(
       [&](auto& s) {
+        s.distance = 0.01; // of a tree in another unit
+        s.station_height = 0.5;
+      },
+      "is inside the trunk");
+  refuses(
+      [&](auto& s) {
         s.angular_step = 1e-6;
         s.distance = 1.5;
       },

@@ -112,7 +112,9 @@ inline void declare(CLI::App& app, Scan_options& o)
       ->check(CLI::Range(std::int64_t(1), std::int64_t(10000)))
       ->capture_default_str()
       ->group(scanner);
-  app.add_option("--distance", s.distance, "distance of the stations from the trunk, +-15 %")
+  app.add_option("--distance",
+                 s.distance,
+                 "distance of the stations from the trunk, +-15 %, in the unit of the tree")
       ->capture_default_str()
       ->group(scanner);
   app.add_option("--arc-degrees",

@@ -79,8 +79,8 @@ Scan_options read_scan_options(const NamedParameters& np)
   \npend
   \return a `Scan_report`: status, counts by label, seconds
   \throws pcs::Invalid_input when a value of `scanner` is invalid, the tree has no edge, a
-          coordinate or radius is not finite, a station would send more than 4e9 beams, or the tree
-          would have more than 1e7 leaves
+          coordinate or radius is not finite, a station is inside the trunk or would send more than
+          4e9 beams, or the tree would have more than 1e7 leaves
   \par Complexity
   \f$O(t \log t)\f$ for `t` triangles, and typically \f$O(\log t)\f$ per beam.
   \par Determinism

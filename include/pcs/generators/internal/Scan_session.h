@@ -113,6 +113,7 @@ public:
       m_wood(scan_wood<Kernel>(tree, m_origin))
   {
     place_stations();
+    check_stations();
   }
 
   template <class ConcurrencyTag>
@@ -170,6 +171,31 @@ private:
                               distance * std::sin(azimuth),
                               m_scanner.station_height);
     }
+  }
+
+  //! throws if a station is inside a trunk, which hides all else
+  void check_stations() const
+  {
+    for (std::size_t s = 0; s < m_stations.size(); ++s)
+      for (std::size_t b = 0; b < m_wood.branches.size(); ++b)
+        if (m_wood.orders[b] == 0 && is_inside(m_wood.branches[b], m_stations[s]))
+          throw Invalid_input("pcs::scan_tree(): station " + std::to_string(s) +
+                              " is inside the trunk; `distance` and `positions` are in the unit of "
+                              "the tree");
+  }
+
+  //! returns whether a point is inside a frustum between consecutive nodes
+  bool is_inside(const std::vector<std::size_t>& branch, const Eigen::Vector3d& point) const
+  {
+    for (std::size_t i = 1; i < branch.size(); ++i) {
+      const Scan_node &a = m_wood.nodes[branch[i - 1]], &b = m_wood.nodes[branch[i]];
+      const Eigen::Vector3d axis = b.point - a.point;
+      const double share = (point - a.point).dot(axis) / std::max(axis.squaredNorm(), 1e-300);
+      if (share >= 0 && share <= 1 &&
+          (point - a.point - share * axis).norm() < (1 - share) * a.radius + share * b.radius)
+        return true;
+    }
+    return false;
   }
 
   //! returns the scene at the time of one station; without wind, it is the same for all stations
