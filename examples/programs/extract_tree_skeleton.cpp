@@ -9,6 +9,7 @@
 #include "common/run_program.h"
 #include "common/up_direction.h"
 #include "scan/rays_without_return.h"
+#include "scan/scan_height.h"
 #include "scan/tree_foot.h"
 #include "skeleton/Batch_log.h"
 #include "skeleton/Skeleton_options.h"
@@ -297,8 +298,9 @@ nlohmann::ordered_json work_on(const std::string& input, const Skeleton_options&
   std::vector<std::string> warnings; // of the input
   const pcs::Skeleton_report report = extract(input, table, options, tree, labels, warnings);
   if (report.status != pcs::Status::converged)
-    throw pcs::Invalid_input("there is no tree in this scan (" +
-                             std::to_string(report.number_of_points) + " points)");
+    throw pcs::Invalid_input(
+        "there is no tree in this scan (" + std::to_string(report.number_of_points) + " points); " +
+        advice_of_height(scan_height(table, options.up), options.breast_height));
   nlohmann::ordered_json json = to_json(input, report);
   for (const std::string& sentence : table.schema().warnings)
     json["warnings"].push_back(sentence);
@@ -331,7 +333,7 @@ nlohmann::ordered_json run_one(const std::string& input, const Skeleton_options&
   try {
     return work_on(input, options);
   } catch (const pcs::Invalid_input& e) {
-    throw pcs::Invalid_input(input + ": " + e.what());
+    throw pcs::Invalid_input(input + ": " + in_options(e.what()));
   }
 }
 

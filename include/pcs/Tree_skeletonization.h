@@ -214,7 +214,7 @@ public:
         \npdefault none
     \npend
 
-    \throws Invalid_input if there are too few points, a coordinate is not finite or beyond 1e100, a
+    \throws Invalid_input if there are too few points, a coordinate is not finite or beyond 1e50, a
             parameter is out of range, or the root or the given skeleton is farther from the
             bounding box of the points than the length of the diagonal of this box
   */

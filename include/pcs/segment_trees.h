@@ -227,7 +227,7 @@ void write_trees(const skeleton::Stand& stand,
   \npend
   \return a `Segmentation_report`
 
-  \throws Invalid_input if there are too few points, a coordinate is not finite or beyond 1e100, or
+  \throws Invalid_input if there are too few points, a coordinate is not finite or beyond 1e50, or
       a parameter is out of range
   \par Complexity
   The time is \f$O(n \log n)\f$. Besides `points`, the memory is at most about 240 bytes per point

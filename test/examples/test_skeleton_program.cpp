@@ -437,9 +437,10 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_and_touches_no_file)
   refuses("--input torn.ply --swc old.swc", "torn.ply");
   refuses("--input one.xyz --swc old.swc", "only 1 different");
   refuses("--input nan.xyz --swc old.swc", "finite");
-  refuses("--input huge.xyz --swc old.swc", "beyond 1e100");
+  refuses("--input huge.xyz --swc old.swc", "beyond 1e50");
   refuses("--input words.xyz --swc old.swc", "words.xyz");
   refuses("--input flat.xyz --swc old.swc", "there is no tree");
+  refuses("--input flat.xyz --swc old.swc", "0 times breast height; check the unit of");
   refuses("--input tree.xyz --swc old.swc --mesh no/m.ply", "there is no such folder");
   refuses("--input tree.xyz --swc old.swc --mesh m.stl", "must be .ply, .obj or .glb");
   refuses("--input tree.xyz --swc old.swc --points p.e57", "p.e57");
@@ -455,15 +456,18 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_and_touches_no_file)
   refuses("--input tree.xyz --swc old.swc --mesh m.ply --tolerance nan", "--tolerance");
   refuses("--input tree.xyz --swc old.swc --mesh m.ply --tolerance inf", "--tolerance");
   refuses("--input tree.xyz --swc old.swc --root 1 2", "--root");
-  refuses("--input tree.xyz --swc old.swc --root 900 0 0", "away from the points");
+  refuses("--input tree.xyz --swc old.swc --root 900 0 0", "--root is ");
+  refuses("--input tree.xyz --swc old.swc --root 900 0 0", "in the coordinates and unit of");
   refuses("--input tree.xyz --swc old.swc --root nan 0 0", "--root must be a number");
   refuses("--input tree.xyz --swc old.swc --scanner 1 2 3 4", "three coordinates");
   refuses("--input tree.xyz --swc old.swc --wood bark", "no property 'bark'");
+  refuses("--input in.ply --swc old.swc --wood bark", "--wood: it has x, y, z, nx, status, ny,");
   refuses("--input tree.xyz --swc old.swc --stations place", "no property 'place'");
+  refuses("--input tree.xyz --swc old.swc --stations place", "--stations: it has x, y, z");
   refuses("--input tree.xyz --swc old.swc --stations x --keep-stations", "--stations");
   refuses("--input tree.xyz --swc old.swc --skeleton forest.swc", "forest.swc");
   refuses("--input tree.xyz --swc old.swc --skeleton dot.swc", "coincide");
-  refuses("--input tree.xyz --swc old.swc --skeleton far.swc", "away from the points");
+  refuses("--input tree.xyz --swc old.swc --skeleton far.swc", "--skeleton is ");
   refuses("--input tree.xyz --swc old.swc --skeleton dot.swc --root 0 0 0", "--root");
   refuses("--input tree.xyz --swc old.swc --method magic", "--method");
   for (const std::string option : {"--fit circle",
@@ -483,10 +487,19 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_and_touches_no_file)
   refuses("--input tree.xyz --swc old.swc --tolerance 0.1", "--tolerance has no effect");
   refuses("--input tree.xyz --swc old.swc --separate", "--separate has no effect");
   refuses("--input tree.xyz --swc old.swc --beam-milliradians 1", "--scanner");
+  refuses("--input tree.xyz --swc old.swc --scanner 5e5 5e6 9 --beam-milliradians 1e9",
+          "--beam-milliradians");
+  for (const std::string method : {"sections", "level_sets"})
+    for (const std::string option : {"--keep-leaves", "--keep-trunk"})
+      refuses("--input tree.xyz --swc old.swc " + option + " --method " + method,
+              option + " has no effect without --method chains");
+  refuses("--input tree.xyz --swc old.swc --keep-trunk --skeleton far.swc",
+          "--keep-trunk has no effect with --skeleton");
+  refuses("--input tree.xyz --swc -", "only --report can be written to standard output");
   refuses("--input tree.xyz --swc old.swc --mesh ''", "--mesh has an empty value");
   refuses("--input tree.xyz --folder out --swc old.swc", "leave out --swc old.swc");
   refuses("--input tree.xyz --folder out --report -", "leave out --report -");
-  refuses("--input tree.xyz folder/tree.ply --folder out", "the same name");
+  refuses("--input tree.xyz folder/tree.ply --folder out", "would have the same name; rename");
   // Different spellings of one file, or an output of another scan of the batch.
   refuses("--input tree.xyz --swc old.swc --points folder/../tree.xyz", "the same file");
   std::filesystem::create_symlink("tree.xyz", path("link.xyz"));

@@ -179,7 +179,7 @@ inline void declare(CLI::App& app, Skeleton_options& options)
   app.add_option("--beam-milliradians",
                  options.beam_milliradians,
                  "beam divergence, which makes thin branches too thick; with --scanner")
-      ->check(CLI::NonNegativeNumber)
+      ->check(CLI::Range(0.0, 100.0))
       ->needs("--scanner");
   app.add_option(
       "--wood",
@@ -296,6 +296,9 @@ inline void check_single(const Skeleton_options& options)
                                   &options.report}) {
     if (path->empty())
       continue;
+    if (*path == "-" && path != &options.report)
+      throw pcs::Invalid_input("only --report can be written to standard output (-); name a file "
+                               "for the other results");
     check_folder_of(*path);
     files.add_output(*path);
   }
@@ -373,7 +376,8 @@ inline void check_batch(const Skeleton_options& options)
     const auto [at, is_new] = names.emplace(name_of_scan(input), input);
     if (!is_new)
       throw pcs::Invalid_input("the results of " + at->second + " and " + input +
-                               " would have the same name");
+                               " would have the same name; rename one of them, or use another "
+                               "--folder for it");
   }
   Distinct_files files;
   for (const std::string& input : options.inputs)
@@ -407,6 +411,10 @@ inline void check(const Skeleton_options& options)
   refuse(options.do_estimate_normals && !has_sections, "--estimate-normals", "--method sections");
   const bool has_chains = options.method == "chains" || options.method == "automatic";
   refuse(options.do_remove_leaves && !has_chains, "--remove-leaves", "--method chains");
+  refuse(options.do_keep_leaves && !has_chains, "--keep-leaves", "--method chains");
+  refuse(options.do_keep_trunk && !has_chains, "--keep-trunk", "--method chains");
+  if (options.do_keep_trunk && !options.given.empty())
+    throw pcs::Invalid_input("--keep-trunk has no effect with --skeleton, whose trunk is kept");
   for (const std::string& option : options.given_numbers)
     refuse(!has_sections, option.c_str(), "--method sections");
   refuse(options.tolerance >= 0 && !options.has_mesh(), "--tolerance", "a mesh");

@@ -43,6 +43,15 @@ inline Wood_option parse_wood(const std::string& text)
   return {text.substr(0, at), value};
 }
 
+/// Lists the names of the properties, for messages.
+inline std::string list_properties(const pcs::IO::Point_table& table)
+{
+  std::string text;
+  for (const pcs::IO::Property_description& property : table.schema().properties)
+    text += (text.empty() ? "it has " : ", ") + property.name;
+  return text;
+}
+
 /// Lists the first distinct values with the numbers of their points, for messages.
 inline std::string list_values(const std::vector<double>& values)
 {
@@ -100,8 +109,9 @@ inline std::vector<std::uint8_t> wood_of_points(const pcs::IO::Point_table& tabl
   if (!table.has_property(wood.property)) {
     if (option.empty() && wood_values.empty())
       return {};
-    throw pcs::Invalid_input("the scan has no property '" + wood.property +
-                             "'; name the property of the labels with --wood");
+    throw pcs::Invalid_input(
+        "the scan has no property '" + wood.property +
+        "'; name the property of the labels with --wood: " + list_properties(table));
   }
   const std::vector<double> values = table.property_as_double(wood.property);
   if (!wood.value && wood_values.empty())
@@ -142,7 +152,9 @@ inline std::vector<long long> stations_of_points(const pcs::IO::Point_table& tab
   if (!table.has_property(name)) {
     if (option.empty())
       return {};
-    throw pcs::Invalid_input("the scan has no property '" + name + "'");
+    throw pcs::Invalid_input(
+        "the scan has no property '" + name +
+        "'; name that of the stations with --stations: " + list_properties(table));
   }
   std::vector<long long> stations;
   for (const double x : table.property_as_double(name))

@@ -27,8 +27,8 @@ constexpr std::size_t lowest_number_of_scan_points = 10;
 
 namespace skeleton {
 
-/// Largest coordinate; volumes would overflow beyond it [L].
-constexpr double largest_coordinate = 1e100;
+/// Largest coordinate; squares of volumes would overflow beyond it [L].
+constexpr double largest_coordinate = 1e50;
 
 namespace internal {
 
@@ -49,7 +49,7 @@ read_input(const PointRange& points, const PointMap& point_map, const std::strin
     const Vec3 p = to_vec3(get(point_map, *it));
     if (!is_coordinate(p))
       throw Invalid_input(function + ": point " + std::to_string(input.size()) +
-                          " is not finite, or beyond 1e100");
+                          " is not finite, or beyond 1e50");
     input.push_back(p);
   }
   return input;
@@ -70,6 +70,8 @@ inline void check_number_of_points(const std::vector<Vec3>& input, const std::st
                       std::to_string(lowest_number_of_scan_points));
 }
 
+constexpr const char* other_coordinates = "; it must be in the coordinates and unit of the points";
+
 /// Largest distance of scanners, in diagonals of the bounding box of the points [-]. Farther
 /// scanners are probably in different coordinates.
 constexpr double farthest_scanner = 500;
@@ -80,7 +82,7 @@ inline void check_given(const Given_skeleton& given, const std::string& function
   const auto at_root = [&](const Vec3& p) { return p == given.points.front(); };
   pcs::internal::check(std::all_of(given.points.begin(), given.points.end(), is_coordinate),
                        function,
-                       "given_skeleton has a position beyond 1e100");
+                       "given_skeleton has a position beyond 1e50");
   pcs::internal::check(!std::all_of(given.points.begin(), given.points.end(), at_root),
                        function,
                        "all nodes of given_skeleton coincide; at least two must differ");
@@ -115,15 +117,15 @@ check_input(const std::vector<Vec3>& input, const Session_hints& hints, const st
     check(distance(p),
           internal::farthest_scanner * diagonal,
           "a scanner",
-          ": are these other coordinates?");
+          internal::other_coordinates);
   if (hints.root)
-    check(distance(*hints.root), diagonal, "root_position", "");
+    check(distance(*hints.root), diagonal, "root_position", internal::other_coordinates);
   if (hints.given) {
     internal::check_given(*hints.given, function);
     double nearest = std::numeric_limits<double>::infinity();
     for (const Vec3& p : hints.given->points)
       nearest = std::min(nearest, distance(p));
-    check(nearest, diagonal, "given_skeleton", "");
+    check(nearest, diagonal, "given_skeleton", internal::other_coordinates);
   }
 }
 
