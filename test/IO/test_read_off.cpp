@@ -22,6 +22,7 @@ BOOST_AUTO_TEST_CASE(points_are_read_and_faces_are_skipped)
 {
   for (const char* text : {"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1.5 0\n3 0 1 2\n",
                            "OFF 3 1 0\r\n\r\n0 0 0\r\n1 0 0\r\n0 1.5 0\r\n3 0 1 2 255 0 0\r\n",
+                           "off\n3 1\n0 0 0\n1 0 0\n0 1.5 0\n3 0 1 2\n", // without the edges
                            "# comment\nOFF\n# more\n3 1 0\n0 0 0 # a\n1 0 0\n0 1.5 0\n3 0 1 2"}) {
     const Point_table table = read("a.off", text);
     BOOST_REQUIRE(table.number_of_points() == 3u);
@@ -71,6 +72,9 @@ BOOST_AUTO_TEST_CASE(malformed_lines_are_refused)
   refuses("a.off", "OFF\n3 1 0\n1 2 3\n1 2 3\n1 2 3\n3 0 1 3\n", "line 6: expected the index");
   refuses("a.off", "OFF\n3 1 0\n1 2 3\n1 2 3\n1 2 3\n9 0 1 2\n", "line 6");
   refuses("a.off", "COFF\n2 0 0\n1 2 3 0 0 0\n1 2 3 256 0 0\n", "line 4");
+  refuses("a.off",
+          "COFF\n2 0 0\n1 2 3 1 1 1\n1 2 3 0.5 0 0\n",
+          "found '0.5'; write the colours of the first vertex with decimal points");
 }
 
 BOOST_AUTO_TEST_CASE(every_truncated_file_is_refused)

@@ -227,7 +227,7 @@ BOOST_AUTO_TEST_CASE(damaged_ptx_files_are_refused)
 BOOST_AUTO_TEST_CASE(obj_vertices_are_read_and_faces_are_counted)
 {
   const Point_table table = read("a.obj",
-                                 "# mesh\nmtllib a.mtl\nv 1 2 3\nvn 0 0 1\nv\t4 5 6\nvt 0 0\n"
+                                 "# mesh\nmtllib a.mtl\nv 1 2 3 # a\nvn 0 0 1\nv\t4 5 6#b\nvt 0 0\n"
                                  "f 1 2 1\nf 1//1 2//1 1//1\n");
   BOOST_TEST((table.points() == Points{Point_3(1, 2, 3), Point_3(4, 5, 6)}));
   BOOST_TEST(table.property_names().empty());

@@ -41,7 +41,9 @@ public:
     m_schema.format = File_format::off;
     m_schema.properties.clear();
     std::string_view line = next_line();
-    const std::string keyword(next_word(line));
+    std::string keyword(next_word(line));
+    if (keyword == "off")
+      keyword = "OFF";
     if (keyword != "OFF" && keyword != "NOFF" && keyword != "COFF" && keyword != "CNOFF")
       m_file.fail_at_line("expected 'OFF', 'NOFF', 'COFF' or 'CNOFF', found " + in_quotes(keyword) +
                           (is_off_keyword(keyword) ? ", which is not supported" : ""));
@@ -103,11 +105,13 @@ private:
 
   void read_counts(std::string_view line)
   {
-    std::uint64_t number_of_edges = 0;
+    std::uint64_t number_of_edges = 0; // not needed, and some programs omit it
     for (std::uint64_t* count : {&m_number_of_vertices, &m_number_of_faces, &number_of_edges}) {
       const std::string_view word = next_word(line);
+      if (count == &number_of_edges && word.empty())
+        break;
       if (parse_plain(word, *count) != Parse_result::ok)
-        m_file.fail_at_line("expected the numbers of vertices, faces and edges, found " +
+        m_file.fail_at_line("expected the numbers of vertices, faces and possibly edges, found " +
                             in_quotes(word));
     }
     expect_no_more(line);
@@ -146,9 +150,19 @@ private:
       const std::string_view word = next_word(line);
       const Parse_result result = parse_to_bytes(word, field.type, to + field.offset);
       if (result != Parse_result::ok)
-        m_file.fail_at_line(number_expected(word, field.name, field.type, result));
+        m_file.fail_at_line(number_expected(word, field.name, field.type, result) +
+                            (field.type == Scalar_type::uint8 && is_real(word)
+                                 ? "; write the colours of the first vertex with decimal points"
+                                 : ""));
     }
     expect_no_more(line);
+  }
+
+  static bool is_real(std::string_view word)
+  {
+    double value = 0;
+    return word.find('.') != std::string_view::npos &&
+           parse_number(word, value) == Parse_result::ok;
   }
 
   void check_end()

@@ -23,7 +23,8 @@ namespace internal {
 /*
   The lines `v x y z`, `v x y z weight` and `v x y z red green blue` are points. The lines
   `f a/b/c ...` are faces, of which the index `a` of the vertex is kept on request. All other lines
-  are skipped. The file is read twice, because OBJ files do not store the number of vertices.
+  are skipped, and so is text behind `#`. The file is read twice, because OBJ files do not store the
+  number of vertices.
 */
 class Obj_reader : public Format_reader
 {
@@ -42,7 +43,7 @@ public:
       for (std::size_t i = 0; i < other_keywords.size(); ++i)
         is_found[i] = is_found[i] || keyword == other_keywords[i];
       if (keyword == "v" && ++number_of_vertices == 1)
-        number_of_columns = check_columns(file, line);
+        number_of_columns = check_columns(file, without_comment(line));
     }
     if (number_of_vertices == 0)
       throw IO_error(path, "expected vertices, lines of the form: v x y z");
@@ -75,7 +76,8 @@ public:
           read_face(line);
         continue;
       }
-      parse_row(line, block.bytes.data() + block.number_of_rows * m_layout.row_size);
+      parse_row(without_comment(line),
+                block.bytes.data() + block.number_of_rows * m_layout.row_size);
       block.locations.push_back(m_file.line_number());
       ++block.number_of_rows;
       --m_rows_left;
@@ -103,6 +105,11 @@ private:
         names += (names.empty() ? "" : ", ") + std::string(other_keywords[i]);
     if (!names.empty())
       m_schema.warnings.push_back("the lines of the mesh with " + names + " are left out");
+  }
+
+  static std::string_view without_comment(std::string_view line)
+  {
+    return line.substr(0, line.find('#'));
   }
 
   static std::size_t check_columns(const Input_file& file, std::string_view line)
@@ -134,7 +141,7 @@ private:
   {
     std::string text;
     for (;;) {
-      line = trim(line.substr(0, line.find('#')));
+      line = trim(without_comment(line));
       const bool is_continued = !line.empty() && line.back() == '\\';
       text += line.substr(0, line.size() - (is_continued ? 1 : 0));
       if (!is_continued)
