@@ -76,6 +76,8 @@ BOOST_AUTO_TEST_CASE(what_is_wrong_is_named_with_its_line)
   refuses("-1", "the number of layers");
   refuses("1000000000\n", "the number of layers");
   refuses("1\nBranch 0\n", "expected 'Layer'");
+  refuses("1\nLayer 7\n1\n-1 -1\n1\n0 0 0 1\n", "expected 'Layer 0', found 'Layer 7'");
+  refuses(head + "Layer 3\n1\n0 1\n1\n0 1 0 0\n", "expected 'Layer 1', found 'Layer 3'");
   refuses("1\nLayer 0\n2\n", "expected 1 branch");
   refuses("1\nLayer 0\n1\n0 0\n1\n0 0 0 0\n", "there is no parent 0 0");
   refuses("1\nLayer 0\n1\n-1 -1\n0\n", "no points");

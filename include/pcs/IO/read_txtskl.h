@@ -51,7 +51,12 @@ private:
   void read_layer(std::size_t l)
   {
     m_file.expect("Layer");
-    m_file.count("the index of the layer");
+    const std::size_t index = m_file.count("the index of the layer");
+    if (l == 0 && index <= 1)
+      m_first_index = index;
+    if (index != m_first_index + l)
+      m_file.fail("expected 'Layer " + std::to_string(m_first_index + l) + "', found 'Layer " +
+                  std::to_string(index) + "'");
     const std::size_t number_of_branches = m_file.count("the number of branches");
     if (l == 0 && number_of_branches != 1)
       m_file.fail("expected 1 branch in the first layer, found " +
@@ -119,6 +124,7 @@ private:
   Word_reader m_file;
   Tree_skeleton<Kernel> m_tree;
   Layer m_above;
+  std::size_t m_first_index = 0; ///< 0 or 1
 };
 
 } // namespace internal
@@ -128,10 +134,10 @@ private:
   \brief reads a tree skeleton from a `.txtskl` file.
 
   The first line is the number of layers. A layer contains the branches of one order. It begins with
-  a line `Layer <index>` and the number of its branches. Each branch has a line
-  `<parent branch> <parent point>`, the number of its points, and one line `x y z radius` [L] per
-  point. Parent branch and parent point are indices in the previous layer, counted from 0. They are
-  `-1 -1` for the trunk, the only branch of the first layer.
+  a line `Layer <index>`, counted from 0 or 1, and the number of its branches. Each branch has a
+  line `<parent branch> <parent point>`, the number of its points, and one line `x y z radius` [L]
+  per point. Parent branch and parent point are indices in the previous layer, counted from 0. They
+  are `-1 -1` for the trunk, the only branch of the first layer.
 
   Each point becomes a node with a circular cross-section, in the order of the file. The edge to
   the first node of a branch has the length 0 if the file repeats the parent point.
@@ -139,9 +145,9 @@ private:
   \tparam Kernel a kernel of CGAL
   \param path name of the file
   \param tree is replaced; unchanged when an exception is thrown
-  \throws pcs::IO_error with the line and the expected content, when the file cannot be read, a
-          value is missing or not a finite number, a radius is negative, a branch has no points, or
-          a parent does not exist
+  \throws pcs::IO_error with the line and the expected content, when the file cannot be read, the
+          layers are not in order, a value is missing or not a finite number, a radius is negative,
+          a branch has no points, or a parent does not exist
   \par Complexity
   Linear in the size of the file.
 */
