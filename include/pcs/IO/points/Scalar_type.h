@@ -154,12 +154,6 @@ inline Property_values make_values(Scalar_type type, std::size_t n = 0)
   });
 }
 
-//! returns the enumerator of the type of the values
-inline Scalar_type type_of(const Property_values& values)
-{
-  return static_cast<Scalar_type>(values.index());
-}
-
 //! returns the number of values
 inline std::size_t number_of_values(const Property_values& values)
 {
