@@ -105,6 +105,22 @@ BOOST_AUTO_TEST_CASE(coordinates_have_many_names_and_any_order)
   BOOST_TEST((table.property_names() == std::vector<std::string>{"Height", "Easting"}));
 }
 
+BOOST_AUTO_TEST_CASE(normals_have_names_in_any_letter_case)
+{
+  for (const char* names : {"//X Y Z Nx Ny Nz", // CloudCompare
+                            "X,Y,Z,NormalX,NormalY,NormalZ",
+                            "x;y;z;normal_x;normal_y;normal_z",
+                            "x y z NX NY NZ"}) {
+    const Point_table table = read("a.txt", std::string(names) + "\n1 2 3 0 0 1\n");
+    BOOST_TEST((table.property_names() == std::vector<std::string>{"nx", "ny", "nz"}));
+    BOOST_TEST((table.normals()[0] == Point_table::Vector_3(0, 0, 1)));
+  }
+  BOOST_TEST((read("a.txt", "x y z Nx Ny\n1 2 3 0 0\n").property_names() ==
+              std::vector<std::string>{"Nx", "Ny"}));
+  BOOST_TEST((read("a.txt", "x y z nx ny nz Nx\n1 2 3 0 0 1 7\n").property_names() ==
+              std::vector<std::string>{"nx", "ny", "nz", "Nx"}));
+}
+
 BOOST_AUTO_TEST_CASE(tables_of_r_have_row_names_without_a_name)
 {
   for (const char* text : {"\"X\" \"Y\" \"Z\"\n\"1\" 1 2 3\n\"2\" 4 5 6\n",

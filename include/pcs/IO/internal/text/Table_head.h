@@ -206,7 +206,7 @@ private:
 
   static std::string default_name(std::size_t i) { return "column_" + std::to_string(i + 1); }
 
-  //! completes the names of `n` columns, and names the coordinates x, y and z
+  //! completes the names of `n` columns, and names the coordinates x, y, z and a normal nx, ny, nz
   void finish_names(std::size_t n)
   {
     has_names = true;
@@ -216,6 +216,9 @@ private:
         m_names[i] = default_name(i);
     for (std::size_t axis = 0; axis < 3; ++axis)
       m_names[coordinates[axis]] = std::string(1, static_cast<char>('x' + axis));
+    const std::vector<std::size_t> normal = find_normal_columns(m_names);
+    for (std::size_t axis = 0; axis < normal.size(); ++axis)
+      m_names[normal[axis]] = std::string("n") + static_cast<char>('x' + axis);
     for (std::size_t i = 0; i < n; ++i)
       if (std::find(m_names.begin(),
                     m_names.begin() + static_cast<std::ptrdiff_t>(i),

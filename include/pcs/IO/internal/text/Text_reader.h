@@ -23,7 +23,8 @@ namespace internal {
 
 /*
   The head determines the separator and the columns. The coordinates are the columns with the names
-  x, y and z or with names such as Easting, Northing and Height, in any order. Without names, the
+  x, y and z or with names such as Easting, Northing and Height, in any order. Columns such as Nx,
+  Ny and Nz are named nx, ny and nz, if there are all three. Without names, the
   first three columns are x, y and z, and the others are named column_4, column_5, ..., because six
   columns may contain normals or colours. Other columns with text are left out with a warning; their
   missing values are NaN. A first column without a name that counts the rows is refused, because it

@@ -98,6 +98,24 @@ inline Coordinate_columns find_coordinate_columns(const std::vector<std::string>
   return result;
 }
 
+//! the columns of a normal with names such as Nx, N_y or NormalZ in any letter case, or an empty
+//! list unless each of the three has exactly one column
+inline std::vector<std::size_t> find_normal_columns(const std::vector<std::string>& names)
+{
+  std::vector<std::size_t> result;
+  for (const char letter : {'x', 'y', 'z'}) {
+    const auto is_component = [&](const std::string& name) {
+      const std::string plain = plain_name(name);
+      return plain == std::string("n") + letter || plain == std::string("normal") + letter;
+    };
+    if (std::count_if(names.begin(), names.end(), is_component) != 1)
+      return {};
+    result.push_back(static_cast<std::size_t>(
+        std::find_if(names.begin(), names.end(), is_component) - names.begin()));
+  }
+  return result;
+}
+
 //! whether a line below the names contains units: the coordinates have a unit of length
 inline bool are_units(const Table_words& words, const std::array<std::size_t, 3>& coordinates)
 {
