@@ -131,12 +131,14 @@ public:
     return match(start_1, start_2, rotation).cost;
   }
 
-  /// Returns the cost of the most promising trunks, with one trial per pair of children. [-]
-  double look()
+  /// Returns the cost of the most promising trunks, with one trial per pair of children. The trunks
+  /// are found by their `number` heaviest children. [-]
+  double look(std::size_t number = Matching_energy::most_children)
   {
     m_effort = 1;
     constexpr double any = std::numeric_limits<double>::infinity();
-    return match_children(find_trials(0, 0, m_rotation, any, 1).front(), m_rotation, any)->cost;
+    return match_children(find_trials(0, 0, m_rotation, any, 1, number).front(), m_rotation, any)
+        ->cost;
   }
 
   /// Returns null when `progress` asks to stop, or if the cost is not below `most_cost`.
@@ -366,12 +368,14 @@ private:
   }
 
   /// Finds pairs of paths that may continue two branches, the most promising first by costs without
-  /// the subtrees of their children. Pairs that cost at least `limit` by themselves are left out.
+  /// the subtrees of their `number` heaviest children. Pairs that cost at least `limit` by
+  /// themselves are left out.
   std::vector<Trial> find_trials(std::size_t start_1,
                                  std::size_t start_2,
                                  const Eigen::Matrix3d& rotation,
                                  double limit,
-                                 std::size_t most) const
+                                 std::size_t most,
+                                 std::size_t number = Matching_energy::most_children) const
   {
     const auto &paths_1 = paths(0).paths_of[start_1], &paths_2 = paths(1).paths_of[start_2];
     const double difference = m_energy.least_difference(start_1, start_2);
@@ -403,7 +407,7 @@ private:
         double cost = 0;
         if (!is_alone) {
           const double most_cost = lowest.size() < most ? limits::infinity() : lowest.front();
-          cost = m_energy.quick_cost_of_paths(p1, p2, rotation, most_cost, prices);
+          cost = m_energy.quick_cost_of_paths(p1, p2, rotation, most_cost, prices, number);
           if (cost > most_cost)
             continue;
           if (lowest.size() == most) {

@@ -251,12 +251,13 @@ public:
   }
 
   /// Estimates the cost of two paths without the subtrees of their children; infinity as soon as it
-  /// is known to exceed `most`.
+  /// is known to exceed `most`. Of each branch, the `number` heaviest children are assigned.
   double quick_cost_of_paths(std::size_t p1,
                              std::size_t p2,
                              const Eigen::Matrix3d& rotation,
                              double most,
-                             Child_cost_cache& prices) const
+                             Child_cost_cache& prices,
+                             std::size_t number = most_children) const
   {
     const Trial trial = match_curves(p1, p2, rotation, few_samples);
     const Children a = children_of(0, path(0, p1), trial.last[0], nullptr);
@@ -264,7 +265,7 @@ public:
     const Eigen::Matrix3d turned = turn(trial, a, b, rotation, 0, 0);
     double cost = is_turned() ? turned_energy(trial, rotation, turned) : trial.cost;
     cost += rest_cost(p1, p2, trial.last);
-    return cost + quick_cost_of_children(a, b, turned, length(0, p1), most - cost, prices);
+    return cost + quick_cost_of_children(a, b, turned, length(0, p1), most - cost, prices, number);
   }
 
   /// Estimates the rotation that aligns two paths and their children, without their subtrees. The
@@ -289,12 +290,14 @@ public:
                                 const Eigen::Matrix3d& rotation,
                                 double parent_length,
                                 double most,
-                                Child_cost_cache& prices) const
+                                Child_cost_cache& prices,
+                                std::size_t number = most_children) const
   {
     constexpr double slack = 1e-9; // rounding must not decide
     std::array<Children, 2> few;
     std::array<double, 2> light = {0, 0};
-    const Children &a = heaviest(all_1, few[0], light[0]), &b = heaviest(all_2, few[1], light[1]);
+    const Children &a = heaviest(all_1, number, few[0], light[0]),
+                   &b = heaviest(all_2, number, few[1], light[1]);
     const std::size_t n = a.s.size(), m = b.s.size();
     double total = single_term(std::abs(light[0] - light[1]));
     for (const double w : a.weight)
@@ -331,7 +334,8 @@ public:
       return inherited;
     std::array<Children, 2> few;
     std::array<double, 2> light;
-    const Children &a = heaviest(all_1, few[0], light[0]), &b = heaviest(all_2, few[1], light[1]);
+    const Children &a = heaviest(all_1, most_children, few[0], light[0]),
+                   &b = heaviest(all_2, most_children, few[1], light[1]);
     const std::vector<double>& gamma = trial.gamma;
     const std::size_t n = gamma.size();
     std::array<Sampled_curve, 2> cut;
@@ -423,18 +427,19 @@ private:
     return m_weights.length * m_weights.unmatched * std::abs(a - b);
   }
 
-  /// Returns all children if they are not too many, else the heaviest in the same order, stored in
-  /// `few`; `light` is the weight of the others.
-  static const Children& heaviest(const Children& all, Children& few, double& light)
+  /// Returns all children if they are not more than `number`, else the heaviest in the same order,
+  /// stored in `few`; `light` is the weight of the others.
+  static const Children&
+  heaviest(const Children& all, std::size_t number, Children& few, double& light)
   {
     light = 0;
     const std::size_t n = all.s.size();
-    if (n <= most_children)
+    if (n <= number)
       return all;
     std::vector<std::size_t> order = by_weight(all.weight);
-    for (std::size_t k = most_children; k < n; ++k)
+    for (std::size_t k = number; k < n; ++k)
       light += all.weight[order[k]];
-    order.resize(most_children);
+    order.resize(number);
     std::sort(order.begin(), order.end());
     for (const std::size_t i : order) {
       few.s.push_back(all.s[i]);

@@ -43,30 +43,71 @@ nearest_yaw(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& axis, double
   return std::hypot(sine, cosine) > 1e-9 ? std::atan2(sine, cosine) : angle;
 }
 
-/// Alternates between the best pair of trunks and the yaw that aligns its children. [rad]
-inline Yaw_and_cost
-refine_yaw_candidate(const Matching_energy& energy, const Vec3& axis, double angle, int passes)
+/// Limits of the work of a search.
+struct Yaw_limits
+{
+  bool are_trunks_kept = false; ///< each start keeps its first pair of trunks
+  /// The heaviest children of trunks by which this pair is found. [count]
+  std::size_t number_of_children = Matching_energy::most_children;
+};
+
+/// Many branches at one node are as many children of each of as many trunks. Without limits, time
+/// would then grow with the fourth power of their number. Other trees have no limits.
+inline Yaw_limits find_yaw_limits(const Matching_energy& energy)
+{
+  constexpr double most_pairs_of_children = 750000, fewest = 48;
+  double pairs_of_trunks = 1, pairs_of_children = 1;
+  for (const int t : {0, 1}) {
+    const std::vector<std::size_t>& trunks = energy.paths(t).paths_of[0];
+    std::size_t most = 0;
+    for (const std::size_t p : trunks)
+      most = std::max(most, energy.path(t, p).children.size());
+    pairs_of_trunks *= static_cast<double>(trunks.size());
+    pairs_of_children *= static_cast<double>(std::min(most, Matching_energy::most_children));
+  }
+  Yaw_limits limits;
+  if (pairs_of_trunks * pairs_of_children <= most_pairs_of_children)
+    return limits;
+  limits.are_trunks_kept = true;
+  limits.number_of_children = static_cast<std::size_t>(
+      std::max(fewest, std::sqrt(most_pairs_of_children / pairs_of_trunks)));
+  return limits;
+}
+
+/// Alternates between the best pair of trunks and the yaw that aligns its children, from the yaw
+/// `best`. If trunks are kept, all pairs are compared only once, if `do_find_trunks`.
+inline Yaw_and_cost refine_yaw_candidate(const Matching_energy& energy,
+                                         const Vec3& axis,
+                                         Yaw_and_cost best,
+                                         bool do_find_trunks,
+                                         int passes,
+                                         const Yaw_limits& limits)
 {
   constexpr int passes_of_rotation = 3;
   constexpr double least_step = 1e-12; // [rad]
-  Yaw_and_cost best{angle, 0, 0, 0};
   for (int pass = 0;; ++pass) {
     const Eigen::Matrix3d rotation = Eigen::AngleAxisd(best.angle, axis).toRotationMatrix();
     Matching_energy::Child_cost_cache prices;
     best.cost = std::numeric_limits<double>::infinity();
-    for (const std::size_t p1 : energy.paths(0).paths_of[0])
-      for (const std::size_t p2 : energy.paths(1).paths_of[0]) {
-        const double cost = energy.quick_cost_of_paths(p1, p2, rotation, best.cost, prices);
-        if (cost < best.cost)
-          best = {best.angle, cost, p1, p2};
-      }
+    const auto compare = [&](std::size_t p1, std::size_t p2, std::size_t number) {
+      const double cost = energy.quick_cost_of_paths(p1, p2, rotation, best.cost, prices, number);
+      if (cost < best.cost)
+        best = {best.angle, cost, p1, p2};
+    };
+    if (limits.are_trunks_kept && (pass > 0 || !do_find_trunks))
+      compare(best.path_1, best.path_2, Matching_energy::most_children);
+    else
+      for (const std::size_t p1 : energy.paths(0).paths_of[0])
+        for (const std::size_t p2 : energy.paths(1).paths_of[0])
+          compare(p1, p2, limits.number_of_children);
     if (pass == passes)
       return best;
     const double next =
         nearest_yaw(energy.quick_turn(best.path_1, best.path_2, rotation, passes_of_rotation),
                     axis,
                     best.angle);
-    if (std::abs(next - best.angle) < least_step)
+    const bool is_estimate = limits.are_trunks_kept && pass == 0; // of the cost
+    if (std::abs(next - best.angle) < least_step && !is_estimate)
       return best;
     best.angle = next;
   }
@@ -77,7 +118,8 @@ refine_yaw_candidate(const Matching_energy& energy, const Vec3& axis, double ang
 /*!
   Finds angles about the vertical for which branches agree, the most promising first. [rad]
 
-  From 24 start angles, the yaw is refined by the branches on the trunks, without their subtrees.
+  From 24 start angles, the yaw is refined by the branches on the trunks, without their subtrees. If
+  many branches begin at one node, each start finds its trunks once, by their heaviest children.
   Angles below one step are discarded: small differences between aligned trees are represented by
   rotations of branches. The result is empty if `progress` asks to stop.
 */
@@ -92,6 +134,7 @@ std::vector<double> find_yaw_candidates(const Matching_energy& energy,
   constexpr double pi = pcs::internal::pi, step = 2 * pi / number_of_starts;
   constexpr int first_passes = 3, last_passes = 20;
   const Vec3 axis = energy.frame().transpose() * up;
+  const internal::Yaw_limits limits = internal::find_yaw_limits(energy);
   std::vector<Yaw_and_cost> yaws(number_of_starts);
   static_assert(number_of_starts % batch == 0);
   for (std::size_t first = 0; first < number_of_starts; first += batch) {
@@ -103,8 +146,10 @@ std::vector<double> find_yaw_candidates(const Matching_energy& energy,
           const std::size_t k = first + i;
           yaws[k] = internal::refine_yaw_candidate(energy,
                                                    axis,
-                                                   step * static_cast<double>(k),
-                                                   first_passes);
+                                                   {step * static_cast<double>(k), 0, 0, 0},
+                                                   true,
+                                                   first_passes,
+                                                   limits);
         },
         1);
   }
@@ -125,7 +170,8 @@ std::vector<double> find_yaw_candidates(const Matching_energy& energy,
       continue;
     if (!progress(0))
       return {};
-    const double angle = internal::refine_yaw_candidate(energy, axis, t.angle, last_passes).angle;
+    const double angle =
+        internal::refine_yaw_candidate(energy, axis, t, false, last_passes, limits).angle;
     if (is_new(angle))
       result.push_back(angle);
   }

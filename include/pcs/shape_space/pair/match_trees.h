@@ -174,12 +174,13 @@ private:
                                                                      number_of_looks,
                                                                      m_progress);
     angles.insert(angles.begin(), 0);
+    const std::size_t number = internal::find_yaw_limits(matching.energy()).number_of_children;
     std::vector<double> cost;
     for (const double angle : angles) {
       if (!m_progress(0))
         return {};
       matching.set_turn(angle, m_alignment.up);
-      cost.push_back(matching.look());
+      cost.push_back(matching.look(number));
     }
     std::vector<std::size_t> order(angles.size());
     std::iota(order.begin(), order.end(), std::size_t(0));
