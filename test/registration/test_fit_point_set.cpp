@@ -137,6 +137,31 @@ BOOST_AUTO_TEST_CASE(landmarks_determine_the_pose_and_are_reached)
   BOOST_TEST(report.largest_landmark_gap > 0);
 }
 
+BOOST_AUTO_TEST_CASE(landmarks_determine_the_pose_only_if_wanted_and_at_three_places)
+{
+  const Points rest = pcs_test::star(1000, 0);
+  Points target;
+  for (const Vec3& p : pcs_test::star(1000, 1))
+    target.push_back(p + Vec3(1, 0, 0));
+  const auto motion = [&](const std::vector<std::size_t>& points, bool do_align) {
+    Points source = rest;
+    source.push_back(rest[0]);
+    source.push_back(rest[0]);
+    std::vector<pcs::Landmark> landmarks;
+    for (const std::size_t i : points)
+      landmarks.push_back({i, Vec3(source[i] + Vec3(3, 0, 0))});
+    const auto report = pcs::fit_point_set(source,
+                                           target,
+                                           P::do_align(do_align).number_of_iterations(5),
+                                           P::landmarks(landmarks));
+    return report.rigid_motion(Vec3(0, 0, 0)).x();
+  };
+  const std::vector<std::size_t> spread{0, 400, 800}, same{0, 1000, 1001};
+  BOOST_TEST(std::abs(motion(spread, true) - 3) < 1e-9);
+  BOOST_TEST(motion(spread, false) == 0);
+  BOOST_TEST(motion(same, true) < 2); // by soft matches
+}
+
 BOOST_AUTO_TEST_CASE(identical_clouds_stay_where_they_are)
 {
   const Points rest = pcs_test::star(1500, 0);
@@ -249,6 +274,9 @@ BOOST_AUTO_TEST_CASE(another_shape_far_away_is_not_plausible_without_alignment)
     p += Vec3(100, 0, 0);
   const auto report = pcs::fit_point_set(source, target, P::do_align(false));
   BOOST_TEST(!report.is_plausible);
+  BOOST_TEST(report.number_of_matched == 0u);
+  BOOST_TEST(std::isnan(report.median_residual));
+  BOOST_TEST(std::isnan(report.rms_residual));
   source = pcs_test::star(1000, 0);
   BOOST_TEST(pcs::fit_point_set(source, target).is_plausible);
   BOOST_TEST(pcs_test::rms_distance(source, target) < 0.01 * extent);

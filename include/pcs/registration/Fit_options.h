@@ -33,7 +33,8 @@ struct Fit_report
   std::size_t number_of_matched = 0;       ///< source points with a target point [count]
   std::size_t number_of_iterations = 0;    ///< of all stages [count]
 
-  double median_residual = 0;      ///< distance of a matched point from the target surface [L]
+  //! distance of a matched point from the target surface; NaN if none is matched [L]
+  double median_residual = 0;
   double rms_residual = 0;         ///< the same, root mean square [L]
   double largest_landmark_gap = 0; ///< largest distance of a landmark from its target [L]
   double rms_displacement = 0;     ///< of all source points [L]

@@ -287,19 +287,17 @@ private:
 
   // ---- stages
 
-  /// Moves the shape rigidly: by the landmarks if there are three or more, otherwise by soft
-  /// matches if that is wanted.
+  /// Moves the shape rigidly, if that is wanted: by the landmarks if there are three or more at
+  /// different places, otherwise by soft matches.
   Status align(const Fit_target& target, Fit_report& report, pcs::internal::Progress& progress)
   {
     Rigid_motion motion;
-    constexpr std::size_t least_number_of_landmarks = 3;
-    if (m_landmark_targets.size() >= least_number_of_landmarks) {
-      std::vector<Vec3> source;
-      for (std::size_t l = 0; l < m_landmark_targets.size(); ++l)
-        source.push_back(moved(m_fine.size() + l));
+    std::vector<Vec3> source;
+    for (std::size_t l = 0; l < m_landmark_targets.size(); ++l)
+      source.push_back(moved(m_fine.size() + l));
+    if (m_options.do_align && have_three_places(source)) {
       motion = fit_motion(source, m_landmark_targets, std::vector<double>(source.size(), 1));
     } else if (m_options.do_align) {
-      std::vector<Vec3> source;
       soft_positions(source);
       motion = align_rigidly<ConcurrencyTag>(source,
                                              target.soft,
@@ -318,6 +316,15 @@ private:
     world << motion.r, f.origin - motion.r * f.origin + f.unit * motion.t;
     report.rigid_motion = Similarity::from_matrix(world);
     return progress.is_cancelled() ? Status::cancelled : Status::converged;
+  }
+
+  static bool have_three_places(const std::vector<Vec3>& points)
+  {
+    std::vector<Vec3> places; // at most 3
+    for (const Vec3& p : points)
+      if (places.size() < 3 && std::find(places.begin(), places.end(), p) == places.end())
+        places.push_back(p);
+    return places.size() == 3;
   }
 
   /// Standard deviation of the soft matches at the end of the rigid alignment. [extents]

@@ -125,7 +125,8 @@ public:
         \nptype floating point, 0 to 0.9
         \npdefault 0.1
       \np{do_align} whether a rigid alignment comes first. It finds turns of up to about 60 degrees;
-        three or more landmarks replace it.
+        three or more landmarks at different places determine it instead. Without it, landmarks
+        only act like springs.
         \nptype `bool`
         \npdefault `true`
       \np{number_of_iterations} largest number of iterations of each of the three stages [count]
@@ -187,9 +188,9 @@ public:
     \param target at least 4 points [L]
     \param np `point_map` and `normal_map` of the target, and
     \npbegin
-      \np{landmarks} points of the source with known positions on the target. Three or more
-        determine the initial pose. They act like stiff springs; `largest_landmark_gap` of the
-        report is the largest distance that remains.
+      \np{landmarks} points of the source with known positions on the target. Three or more at
+        different places determine the initial pose, unless `do_align` is `false`. They act like
+        stiff springs; `largest_landmark_gap` of the report is the largest distance that remains.
         \nptype `std::vector<Landmark>`
         \npdefault none
     \npend
@@ -388,9 +389,12 @@ private:
         (*put_matches)(index);
     report.number_of_samples = number_of_samples();
     report.number_of_matched = residuals.size();
-    report.rms_residual =
-        unit * std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, residuals.size())));
-    report.median_residual = unit * internal::lower_median(residuals);
+    if (residuals.empty())
+      report.rms_residual = report.median_residual = std::numeric_limits<double>::quiet_NaN();
+    else {
+      report.rms_residual = unit * std::sqrt(squares / static_cast<double>(residuals.size()));
+      report.median_residual = unit * internal::lower_median(residuals);
+    }
     report.rms_displacement = unit * std::sqrt(moved / static_cast<double>(matches.size()));
     for (const auto& l : landmarks)
       report.largest_landmark_gap =
