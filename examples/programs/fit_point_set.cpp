@@ -61,14 +61,15 @@ positions and normals follow. Lengths are fractions of the extent of the source,
 its bounding box; a warning says if a few stray points determine it.
 
 Landmarks are known pairs of a source point, counted from 0, and its position on the target. Three
-or more determine the initial pose. JSON: [{"point": 12, "target": [x, y, z]}, ...]. All other
-files are tables with lines point,x,y,z.
+or more at different places determine the initial pose, unless --no-alignment is given. JSON:
+[{"point": 12, "target": [x, y, z]}, ...]. All other files are tables with lines point,x,y,z.
 
 --filled writes the fitted source points that have no match: they lie where the target has a hole.
 Together with the target, they form a cloud without these holes.
 
 A warning says that the result is not plausible: fewer than a fifth of the points are matched, or
-their median distance from the target exceeds 0.02.
+their median distance from the target exceeds 0.02. Another one says that the extents of source
+and target differ by more than a factor of 3.
 
 Exit codes: 0 success, 1 bad input or usage, 2 internal error.)";
 }
@@ -207,8 +208,12 @@ void print_summary(const pcs::Fit_report& r)
   std::cout << "points      " << r.number_of_source_points << ", target "
             << r.number_of_target_points << '\n'
             << "matched     " << r.number_of_matched << '\n'
-            << "residual    median " << r.median_residual << ", rms " << r.rms_residual << '\n'
-            << "moved       rms " << r.rms_displacement << '\n'
+            << "residual    ";
+  if (r.number_of_matched > 0)
+    std::cout << "median " << r.median_residual << ", rms " << r.rms_residual << '\n';
+  else
+    std::cout << "none\n";
+  std::cout << "moved       rms " << r.rms_displacement << '\n'
             << "iterations  " << r.number_of_iterations << '\n'
             << "status      " << r.status << '\n';
 }
@@ -234,19 +239,23 @@ std::vector<std::string> adapt_source(const pcs::IO::Point_schema& schema,
   if (schema.has("rot_0") && schema.has("scale_0"))
     warnings.push_back("the rotations, scales and colours of Gaussian splats are left as they are; "
                        "only positions and normals are fitted");
+  warn_of_unknown_normals(schema, warnings);
   adapt_faces(faces, output, warnings);
   return warnings;
 }
 
-/// Adds a warning if a few points are so far away that they determine the extent of the source, by
-/// which all lengths are measured.
-void warn_of_strays(const std::vector<pcs::IO::Point_table::Point_3>& points,
-                    std::vector<std::string>& warnings)
+/// Diagonals of the bounding box of all points, and of all without the outermost ones. [L]
+struct Extents
 {
-  constexpr double least_ratio = 0.05, share_of_strays = 0.01; // on each side of an axis
+  double all = 0, inner = 0;
+};
+
+Extents extents_of(const std::vector<pcs::IO::Point_table::Point_3>& points)
+{
+  constexpr double share_of_strays = 0.01; // on each side of an axis
   if (points.empty())
-    return;
-  double extents = 0, inner_extents = 0; // sums of squares
+    return {};
+  Extents extents;
   std::vector<double> values(points.size());
   for (int axis = 0; axis < 3; ++axis) {
     std::transform(points.begin(), points.end(), values.begin(), [&](const auto& p) {
@@ -254,16 +263,31 @@ void warn_of_strays(const std::vector<pcs::IO::Point_table::Point_3>& points,
     });
     std::sort(values.begin(), values.end());
     const auto cut = static_cast<std::size_t>(share_of_strays * static_cast<double>(values.size()));
-    extents += std::pow(values.back() - values.front(), 2);
-    inner_extents += std::pow(values[values.size() - 1 - cut] - values[cut], 2);
+    extents.all = std::hypot(extents.all, values.back() - values.front());
+    extents.inner = std::hypot(extents.inner, values[values.size() - 1 - cut] - values[cut]);
   }
-  if (!(inner_extents < least_ratio * least_ratio * extents))
-    return;
+  return extents;
+}
+
+/// Adds warnings if a few points are so far away that they determine the extent of the source, by
+/// which all lengths are measured, and if the sizes of both clouds suggest different units. A
+/// source that is much too small finds matches everywhere on the target, and looks plausible.
+void warn_of_extents(const Extents& source,
+                     const Extents& target,
+                     std::vector<std::string>& warnings)
+{
+  constexpr double least_ratio = 0.05, largest_ratio = 3;
   std::ostringstream text;
-  text << "a few points lie far away from all others and make the extent " << std::sqrt(extents)
-       << " instead of " << std::sqrt(inner_extents)
-       << ": lengths are fractions of it; remove these points";
-  warnings.push_back(text.str());
+  if (source.inner < least_ratio * source.all) {
+    text << "a few points lie far away from all others and make the extent " << source.all
+         << " instead of " << source.inner << ": lengths are fractions of it; remove these points";
+    warnings.push_back(text.str());
+  } else if (std::max(source.inner, target.inner) >
+             largest_ratio * std::min(source.inner, target.inner)) {
+    text << "the extent is " << source.inner << ", and " << target.inner
+         << " that of the target: sizes are not adapted; convert the units if they differ";
+    warnings.push_back(text.str());
+  }
 }
 
 void warn(const std::string& file, const std::vector<std::string>& warnings)
@@ -276,8 +300,10 @@ std::string plausibility_warning(const pcs::Fit_report& r, bool has_landmarks)
 {
   std::ostringstream text;
   text << "not plausible, " << r.number_of_matched << " of " << r.number_of_source_points
-       << " points are matched with a median residual of " << r.median_residual
-       << "; check the units and origins of both clouds"
+       << " points are matched";
+  if (r.number_of_matched > 0)
+    text << " with a median residual of " << r.median_residual;
+  text << "; check the units and origins of both clouds"
        << (has_landmarks ? " and the landmarks" : "; landmarks may help");
   return text.str();
 }
@@ -312,7 +338,7 @@ void run(const Options& options)
   if (!options.filled.empty())
     check_output(options.filled, source.schema());
   std::vector<std::string> warnings = adapt_source(source.schema(), faces, options.output);
-  warn_of_strays(source.points(), warnings);
+  warn_of_extents(extents_of(source.points()), extents_of(target.points()), warnings);
 
   std::vector<std::ptrdiff_t> matches;
   const pcs::Fit_report report = fit_table(source, target, landmarks, options, matches, warnings);

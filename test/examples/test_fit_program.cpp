@@ -121,6 +121,9 @@ BOOST_AUTO_TEST_CASE(landmarks_are_read_from_json_and_from_a_table)
   const std::string from_json = program.content("out.ply");
   BOOST_TEST(program.run(files + "--landmarks a.csv") == 0, program.err);
   BOOST_TEST((program.content("out.ply") == from_json));
+  program.write("a.csv", "point, x, y, z\n# the foot\n5, 1001.1, -20.3, 5.8\n");
+  BOOST_TEST(program.run(files + "--landmarks a.csv") == 0, program.err);
+  BOOST_TEST((program.content("out.ply") == from_json));
   BOOST_TEST(program.run(files) == 0, program.err);
   BOOST_TEST((program.content("out.ply") != from_json));
 }
@@ -134,6 +137,8 @@ BOOST_AUTO_TEST_CASE(invalid_input_is_refused_and_writes_nothing)
   refuses(program, files + "--samples -3", "number_of_samples is -3");
   program.write("bad.csv", "1,2,3,4\n1,2,x,4\n");
   refuses(program, files + "--landmarks bad.csv", "line 2");
+  program.write("bad.csv", "1;2;3;4\n");
+  refuses(program, files + "--landmarks bad.csv", "separated by commas, found 1;2;3;4");
   program.write("bad.json", R"([{"point": -1, "target": [1, 2, 3]}])");
   refuses(program, files + "--landmarks bad.json", "/0/point");
   program.write("far.csv", "99999,1,2,3\n");
@@ -200,6 +205,25 @@ BOOST_AUTO_TEST_CASE(points_that_spoil_the_extent_are_reported)
   BOOST_TEST(program.err.find(words) != std::string::npos, program.err);
 }
 
+BOOST_AUTO_TEST_CASE(clouds_of_different_sizes_are_reported)
+{
+  Fit_run program;
+  const std::string words = "sizes are not adapted; convert the units if they differ";
+  const auto has_warning = [&](double size) {
+    std::vector<Table::Point_3> points;
+    for (const auto& p : program.source.points())
+      points.emplace_back(size * p.x(), size * p.y(), size * p.z());
+    pcs::IO::write_points(program.path("other.ply"), Table(points));
+    const int code =
+        program.run("--source source.ply --target other.ply --output out.ply --iterations 5");
+    BOOST_TEST(code == 0, program.err);
+    return program.err.find(words) != std::string::npos;
+  };
+  BOOST_TEST(has_warning(10));
+  BOOST_TEST(has_warning(0.1));
+  BOOST_TEST(!has_warning(2));
+}
+
 BOOST_AUTO_TEST_CASE(advice_names_units_and_given_landmarks)
 {
   Fit_run program;
@@ -208,7 +232,9 @@ BOOST_AUTO_TEST_CASE(advice_names_units_and_given_landmarks)
     millimetres.emplace_back(1000 * p.x(), 1000 * p.y(), 1000 * p.z());
   pcs::IO::write_points(program.path("mm.ply"), Table(millimetres));
   const std::string other = "--source mm.ply --target target.ply --output out.ply ";
-  BOOST_TEST(program.run(other) == 0, program.err);
+  BOOST_TEST(program.run(other + "--report r.json") == 0, program.err);
+  BOOST_TEST(Json::parse(program.content("r.json"))["median_residual"].is_null()); // no match
+  BOOST_TEST(program.err.find("points are matched; check") != std::string::npos, program.err);
   BOOST_TEST(program.err.find("check the units and origins of both clouds; landmarks may help") !=
                  std::string::npos,
              program.err);

@@ -5,9 +5,11 @@
 #ifndef PCS_EXAMPLES_PROGRAMS_DEFORMATION_NORMALS_H
 #define PCS_EXAMPLES_PROGRAMS_DEFORMATION_NORMALS_H
 
+#include <pcs/IO/points/Point_schema.h>
 #include <pcs/IO/points/Point_table.h>
 #include <pcs/IO/points/Scalar_type.h>
 
+#include <cctype>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -39,6 +41,29 @@ inline std::string invalid_normal_warning(std::uint64_t number)
 {
   return "the normal of point " + std::to_string(number) +
          " is not finite: all normals are left as they are";
+}
+
+/// Adds a warning if properties look like a normal but do not have the names by which normals are
+/// known.
+inline void warn_of_unknown_normals(const pcs::IO::Point_schema& schema,
+                                    std::vector<std::string>& warnings)
+{
+  const bool is_known = schema.has("nx") && schema.has("ny") && schema.has("nz");
+  std::string found;
+  for (const pcs::IO::Property_description& property : schema.properties) {
+    std::string letters;
+    for (const unsigned char c : property.name)
+      if (std::isalpha(c) != 0)
+        letters += static_cast<char>(std::tolower(c));
+    const bool is_name = property.name == "nx" || property.name == "ny" || property.name == "nz";
+    for (const char* prefix : {"n", "normal", "normals"})
+      for (const char axis : {'x', 'y', 'z'})
+        if (letters == std::string(prefix) + axis && !(is_known && is_name))
+          found += (found.empty() ? "" : ", ") + property.name;
+  }
+  if (!found.empty())
+    warnings.push_back("the properties " + found +
+                       " are left as they are: normals need the three names nx, ny and nz");
 }
 
 /// Converts a value; rounds and clamps it if `T` is an integer type.

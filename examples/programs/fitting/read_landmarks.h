@@ -10,6 +10,7 @@
 #include <pcs/core/errors.h>
 #include <pcs/registration/Fit_options.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -40,7 +41,7 @@ inline std::vector<pcs::Landmark> read_landmarks_json(const std::string& path)
   return result;
 }
 
-/// Lines `point,x,y,z`, after an optional header with these names.
+/// Lines `point,x,y,z`, after an optional header with these names. Blanks are skipped.
 inline std::vector<pcs::Landmark> read_landmarks_csv(const std::string& path)
 {
   std::ifstream in(path);
@@ -53,7 +54,12 @@ inline std::vector<pcs::Landmark> read_landmarks_csv(const std::string& path)
       line.pop_back();
     if (number == 1 && line.compare(0, 3, "\xEF\xBB\xBF") == 0) // byte order mark
       line.erase(0, 3);
-    if (line.empty() || (number == 1 && line == "point,x,y,z"))
+    std::string names = line;
+    names.erase(std::remove_if(names.begin(),
+                               names.end(),
+                               [](char ch) { return ch == ' ' || ch == '\t' || ch == '"'; }),
+                names.end());
+    if (names.empty() || names[0] == '#' || (result.empty() && names == "point,x,y,z"))
       continue;
     std::istringstream text(line);
     std::int64_t point = -1;
@@ -62,7 +68,8 @@ inline std::vector<pcs::Landmark> read_landmarks_csv(const std::string& path)
     text >> point >> a >> x >> b >> y >> c >> z;
     if (!text || a != ',' || b != ',' || c != ',' || text >> rest || point < 0)
       throw pcs::IO_error(path,
-                          "line " + std::to_string(number) + ": expected point,x,y,z, found " +
+                          "line " + std::to_string(number) +
+                              ": expected point,x,y,z separated by commas, found " +
                               line.substr(0, 60));
     result.push_back({static_cast<std::size_t>(point), pcs::Similarity::Vec3(x, y, z)});
   }
