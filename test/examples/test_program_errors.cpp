@@ -94,6 +94,13 @@ BOOST_FIXTURE_TEST_CASE(the_top_level_is_checked, Deform_run)
   refuses_edit(*this, R"({"handles": [7]})", {"/handles/0: expected an object", "found 7"});
 }
 
+BOOST_FIXTURE_TEST_CASE(a_turn_that_is_too_large_is_refused_with_its_handle, Deform_run)
+{
+  refuses_handle(*this,
+                 "{" + head + R"(, "rotate": {"axis": [0, 0, 1], "degrees": 1e15}})",
+                 {"edit.json: /handles/1: ", "a turn by"});
+}
+
 BOOST_FIXTURE_TEST_CASE(a_selection_is_checked, Deform_run)
 {
   refuses_handle(*this, R"({"fixed": true})", {"/handles/1: the key select is missing"});
@@ -333,6 +340,8 @@ BOOST_FIXTURE_TEST_CASE(files_are_checked_before_the_work, Deform_run)
   refuses_files(in + " --output out.ply --report ./edit.json",
                 {"--report and --edit are the same file"});
   refuses_files(in + " --output out.ply --report ./out.ply",
+                {"--report and --output are the same file"});
+  refuses_files(in + " --output out2.ply --report \"$PWD/out2.ply\"", // neither exists
                 {"--report and --output are the same file"});
   refuses_files(in + " --output edit.json", {"--output and --edit are the same file"});
   BOOST_TEST(exists("edit.json"));

@@ -18,6 +18,16 @@ namespace program {
 class Distinct_files
 {
 public:
+  /// Returns the canonical absolute path, which makes spellings comparable. The part that does not
+  /// exist yet is normalised.
+  static std::string real(const std::string& path)
+  {
+    std::error_code error;
+    const auto absolute = std::filesystem::absolute(path);
+    const auto canonical = std::filesystem::weakly_canonical(absolute, error);
+    return (error ? absolute.lexically_normal() : canonical).string();
+  }
+
   /// Adds an input. The same file may be an input twice; empty paths are ignored.
   void add_input(const std::string& path) { add(path, false); }
 
@@ -30,16 +40,6 @@ private:
     std::string path;
     bool is_written;
   };
-
-  /// Returns the canonical absolute path, which makes spellings comparable. The part that does not
-  /// exist yet is normalised.
-  static std::string real(const std::string& path)
-  {
-    std::error_code error;
-    const auto absolute = std::filesystem::absolute(path);
-    const auto canonical = std::filesystem::weakly_canonical(absolute, error);
-    return (error ? absolute.lexically_normal() : canonical).string();
-  }
 
   void add(const std::string& path, bool is_written)
   {

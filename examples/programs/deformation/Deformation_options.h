@@ -5,6 +5,7 @@
 #ifndef PCS_EXAMPLES_PROGRAMS_DEFORMATION_DEFORMATION_OPTIONS_H
 #define PCS_EXAMPLES_PROGRAMS_DEFORMATION_DEFORMATION_OPTIONS_H
 
+#include "common/Distinct_files.h"
 #include "deformation/Model_options.h"
 #include <pcs/core/errors.h>
 #include <pcs/deform_point_set.h>
@@ -144,10 +145,9 @@ inline void check(const Options& options)
        {{"--report", &options.report}, {"--output", &options.output}}}};
   for (const auto& [a, b] : pairs) {
     std::error_code error;
-    const bool are_equal =
-        !a.second->empty() && (std::filesystem::equivalent(*a.second, *b.second, error) ||
-                               std::filesystem::path(*a.second).lexically_normal() ==
-                                   std::filesystem::path(*b.second).lexically_normal());
+    const bool are_equal = !a.second->empty() && !b.second->empty() &&
+                           (std::filesystem::equivalent(*a.second, *b.second, error) ||
+                            Distinct_files::real(*a.second) == Distinct_files::real(*b.second));
     if (are_equal)
       throw pcs::Invalid_input(std::string(a.first) + " and " + b.first +
                                " are the same file: " + *a.second);

@@ -239,7 +239,11 @@ public:
     check_overlaps();
     std::vector<pcs::Similarity> result;
     for (std::size_t h = 0; h < m_selections.size(); ++h)
-      result.push_back(similarity(m_edit.handles[h].motion, m_moments[h].centroid()));
+      try {
+        result.push_back(similarity(m_edit.handles[h].motion, m_moments[h].centroid()));
+      } catch (const pcs::Invalid_input& refusal) {
+        throw pcs::IO_error(m_edit.source, m_edit.handles[h].pointer + ": " + refusal.what());
+      }
     return result;
   }
 
