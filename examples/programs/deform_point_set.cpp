@@ -111,6 +111,7 @@ void run_in_memory(const Options& options,
   run.seconds_read = reading.seconds();
   run.number_of_points = table.number_of_points();
   run.warnings = table.schema().warnings;
+  warn_of_unknown_normals(table.schema(), run.warnings);
   const std::optional<Splat_properties> splats = find_splats(table.schema(), run.warnings);
   if (splats)
     note_splats(*splats, run);

@@ -359,6 +359,27 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(reports)
 
+BOOST_FIXTURE_TEST_CASE(normals_with_other_names_are_left_with_a_warning, Deform_run)
+{
+  const Json edit =
+      edit_of({parse(R"({"select": {"property": "status", "equals": 0}, "fixed": true})"),
+               parse(R"({"select": {"property": "status", "equals": 9},
+                                       "translate": [1, 0, 0]})")});
+  deform(edit);
+  BOOST_TEST(err.find("are left as they are") == std::string::npos, err);
+  Table other(input.points());
+  other.add_property("status", input.property<std::uint8_t>("status"));
+  other.add_property("normal_x", input.property<float>("nx"));
+  other.add_property("ny", input.property<float>("ny"));
+  pcs::IO::write_points(path("in.ply"), other);
+  for (const char* more : {"", "--stream"}) {
+    deform(edit, more);
+    BOOST_TEST(report["normals"] == "none");
+    BOOST_TEST(err.find("the properties normal_x, ny are left as they are") != std::string::npos,
+               err);
+  }
+}
+
 BOOST_FIXTURE_TEST_CASE(the_report_has_every_number, Deform_run)
 {
   deform(edit_of(

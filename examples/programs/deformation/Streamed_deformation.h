@@ -131,6 +131,7 @@ private:
       const pcs::IO::Point_reader reader(m_options.input, !m_options.is_points_only);
       m_empty = Table(reader.schema());
       m_run.warnings = reader.schema().warnings;
+      warn_of_unknown_normals(reader.schema(), m_run.warnings);
       m_splats = find_splats(reader.schema(), m_run.warnings);
       if (m_splats)
         note_splats(*m_splats, m_run);
