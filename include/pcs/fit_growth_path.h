@@ -34,7 +34,7 @@ using Growth_spline = shape_space::Growth_spline;
 
   \param space a space that was built
   \param trees handles, at least 2
-  \param times finite and increasing, one per tree
+  \param times finite and increasing, one per tree; differences are 1e-150 to 1e150
   \param np
   \npbegin
     \np{is_monotone} whether lengths and radii never decrease; values that decrease are replaced by
@@ -43,7 +43,7 @@ using Growth_spline = shape_space::Growth_spline;
       \npdefault `false`: they decrease only between trees where the given values decrease
   \npend
   \throws pcs::Invalid_input for a wrong handle, fewer than two trees, another number of times, or
-          times that do not increase
+          times that do not increase or have other differences
   \par Complexity
   \f$O(n e + n^2 b)\f$ for `n` trees of `e` edges and `b` branches.
 */
@@ -71,6 +71,11 @@ fit_growth_path(const Orl_shape_space<Kernel, ConcurrencyTag>& space,
     pcs::internal::check(std::isfinite(times[i]) && (i == 0 || times[i] > times[i - 1]),
                          caller,
                          "times must be finite and increase");
+    // the spline divides by the differences and multiplies them
+    pcs::internal::check(
+        i == 0 || (times[i] - times[i - 1] >= 1e-150 && times[i] - times[i - 1] <= 1e150),
+        caller,
+        "times must differ by 1e-150 to 1e150; choose another unit");
     x.push_back(family.x[trees[i]]);
     has.push_back(family.has[trees[i]]);
   }

@@ -27,7 +27,9 @@ namespace pcs {
 
   `Tree_mean::median` minimises the sum of distances `Orl_metric::sum`. It consists of the medians
   of lengths, radii and attachments, and the L1 means of orientations (Weiszfeld's algorithm). A
-  branch of fewer than half of the trees has the length 0. `Tree_mean::frechet` minimises
+  branch of fewer than half of the trees has the length 0. The median of an even number of values is
+  the middle of the two in between, so a branch of exactly half of the trees, as of one of two, has
+  half its length. `Tree_mean::frechet` minimises
   the sum of squared distances. Every branch is present, with its mean length.
 
   \param space a space that was built
@@ -100,7 +102,8 @@ Orl_tree weighted_mean(const Orl_shape_space<Kernel, ConcurrencyTag>& space,
   \param space a space that was built
   \param t, a, b trees of the space
   \param step finite [-]
-  \throws pcs::Invalid_input for a tree of another space, or a step that is not finite
+  \throws pcs::Invalid_input for a tree with another number of branches or edges, or a step that is
+          not finite
 */
 template <class Kernel, class ConcurrencyTag>
 Orl_tree parallel_displacement(const Orl_shape_space<Kernel, ConcurrencyTag>& space,

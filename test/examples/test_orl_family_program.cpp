@@ -135,6 +135,13 @@ BOOST_AUTO_TEST_CASE(modes_and_new_trees_are_written)
   BOOST_TEST(std::count(distances.begin(), distances.end(), '\n') == 3);
   BOOST_TEST(std::count(distances.begin(), distances.end(), ',') == 6);
   BOOST_TEST(modes["measure"] == "branches");
+  BOOST_TEST(modes["left_out_error_of_mean"].get<double>() > 0);
+  succeeds("--skeleton a.swc --skeleton b.swc --modes 1 --output two"); // none can be left out
+  const Json two = Json::parse(content("two/modes.json"));
+  BOOST_TEST(two["left_out_error_of_mean"].is_null());
+  BOOST_TEST(two["modes"][0]["left_out_error"].is_null());
+  succeeds("--skeleton a.swc --skeleton a.swc --modes 1 --output same");
+  BOOST_TEST((Json::parse(content("same/modes.json"))["modes"] == Json::array()));
   succeeds(skeletons + "--modes 5 --output many");
   BOOST_TEST(err.find("no more than 2 mode(s)") != std::string::npos, err);
   succeeds(skeletons + "--modes 2 --mode-inner-product metric --output metric --report three.json");
@@ -325,6 +332,7 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_with_a_sentence)
   refuses(skeletons + "--sample 1 --seed -1 --output out", "9223372036854775807");
   refuses(skeletons + "--sample 1 --seed 99999999999999999999 --output out", "at most 64 bits");
   refuses(skeletons + "--growth --times 0,2,1 --output out", "increase");
+  refuses(skeletons + "--growth --times=-1e308,0,1e308 --output out", "times must differ by");
   refuses(skeletons + "--mean --growth --times 0,1 --output out", "--times has 2 numbers");
   refuses(skeletons + "--mean --changes c.csv --output out", "two trees");
   succeeds(skeletons + "--mean --save-space s.txt --output saved");

@@ -62,6 +62,7 @@ inline void write_modes(const Space& space, const std::vector<Tree_file>& files,
   json["number_of_modes"] = modes.size();
   json["measure"] =
       modes.features.measure == pcs::Mode_inner_product::metric ? "metric" : "branches";
+  json["modes"] = nlohmann::ordered_json::array();
   for (std::size_t k = 0; k < modes.size(); ++k) {
     const auto i = static_cast<Eigen::Index>(k);
     nlohmann::ordered_json mode;

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace pcs {
@@ -48,8 +49,9 @@ struct Modes_of_variation
   Eigen::MatrixXd scores;     ///< of each tree (row) for each mode, in standard deviations [-]
   Eigen::VectorXd center; ///< mean of the tangent vectors; 0 up to rounding if the mean is exact
   Mode_features features;
-  std::vector<std::vector<double>>
-      left_out; ///< distance of each tree from the space of k modes of all others [-]
+  /// Distance of each tree from the space of k modes of all others; empty for fewer than three
+  /// trees. [-]
+  std::vector<std::vector<double>> left_out;
 
   std::size_t size() const { return static_cast<std::size_t>(deviations.size()); }
   /// Returns the fraction of the variance that the first `k` modes explain. [-]
@@ -57,13 +59,15 @@ struct Modes_of_variation
   {
     return size() > 0 ? shares.head(static_cast<Eigen::Index>(std::min(k, size()))).sum() : 1;
   }
-  /// Returns the root of the mean square of the left-out distances for `k` modes of the others. [-]
+  /// Returns the root of the mean square of the left-out distances for `k` modes of the others; NaN
+  /// for fewer than three trees, of which none can be left out. [-]
   double left_out_error(std::size_t k) const
   {
     double sum = 0;
     for (const auto& d : left_out)
       sum += d[std::min(k, d.size() - 1)] * d[std::min(k, d.size() - 1)];
-    return left_out.empty() ? 0 : std::sqrt(sum / static_cast<double>(left_out.size()));
+    return left_out.empty() ? std::numeric_limits<double>::quiet_NaN()
+                            : std::sqrt(sum / static_cast<double>(left_out.size()));
   }
 };
 
