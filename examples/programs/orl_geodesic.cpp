@@ -16,7 +16,9 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -260,8 +262,44 @@ std::vector<Tree_file> read_trees(const Options& o)
     if (!warning.empty() && !o.is_quiet)
       std::cerr << "orl_geodesic: warning: " << warning << '\n';
   }
+  const bool are_single = std::all_of(files.begin(), files.end(), [](const Tree_file& f) {
+    return f.number_of_trees_in_file <= 1;
+  });
+  if (are_single && o.root_numbers.size() == 1 && o.root_numbers.front() > 1)
+    throw pcs::Invalid_input("--root-number " + std::to_string(o.root_numbers.front()) +
+                             " has no effect: no file of --skeleton has more than one tree");
   warn_of_normals(o, files);
   return files;
+}
+
+/// Warns if two skeletons seem to have different units or origins: the path between them then
+/// changes its size, or moves far away.
+void warn_of_places(const Options& o, const std::vector<Tree_file>& files)
+{
+  constexpr double largest_ratio = 100;
+  const auto extent = [](const Skeleton& tree) {
+    CGAL::Bbox_3 box;
+    for (std::size_t v = 0; v < num_vertices(tree); ++v)
+      box += tree[v].point.bbox();
+    return std::hypot(box.xmax() - box.xmin(), box.ymax() - box.ymin(), box.zmax() - box.zmin());
+  };
+  const auto root_of = [](const Tree_file& file) {
+    return file.skeleton[file.skeleton[boost::graph_bundle].root].point;
+  };
+  const std::vector<std::string>& names = o.skeletons.empty() ? o.trees : o.skeletons;
+  for (std::size_t i = 1; i < files.size() && !o.is_quiet; ++i) {
+    const double a = extent(files[0].skeleton), b = extent(files[i].skeleton);
+    const double distance = std::sqrt(CGAL::squared_distance(root_of(files[0]), root_of(files[i])));
+    std::ostringstream text;
+    if (std::max(a, b) > largest_ratio * std::min(a, b))
+      text << "the extents are " << a << " and " << b << "; check the units of both trees";
+    else if (distance > largest_ratio * std::max(a, b))
+      text << "the roots are " << distance << " apart, and the extents are " << a << " and " << b
+           << "; check the units and origins of both trees";
+    if (!text.str().empty())
+      std::cerr << "orl_geodesic: warning: " << names[0] << " and " << names[i] << ": "
+                << text.str() << '\n';
+  }
 }
 
 void complete_trees(const Options& o, std::vector<Tree_file>& files)
@@ -311,6 +349,7 @@ void run(const Options& o)
   if (was_stored && o.load.empty())
     stored = read_stored(o);
   complete_trees(o, files);
+  warn_of_places(o, files);
 
   std::vector<double> turns; // angles of more than two trees, which are stored rotated
   pcs::Orl_report report;

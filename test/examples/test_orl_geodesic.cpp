@@ -132,6 +132,7 @@ BOOST_AUTO_TEST_CASE(one_tree_of_a_skeleton_file_is_used)
   refuses(pair("forest.swc") + "--root-number 0", "--root-number");
   refuses(pair("forest.swc") + "--root-number 1,1,1", "has 3 numbers for 2 skeletons");
   refuses("--tree a.ply --tree b.ply --output o --root-number 1", "without --skeleton");
+  refuses(pair("a.swc") + "--root-number 2", "no file of --skeleton has more than one tree");
 }
 
 BOOST_AUTO_TEST_CASE(every_place_on_the_path_has_points_and_a_skeleton)
@@ -460,6 +461,25 @@ BOOST_AUTO_TEST_CASE(a_tree_that_stands_turned_is_found)
   }
   refuses("--skeleton one.swc --skeleton two.swc --output out --align sideways", "--align");
   refuses("--skeleton one.swc --skeleton two.swc --output out --up w", "--up");
+  refuses("--skeleton one.swc --skeleton two.swc --output out --align none --up x",
+          "--up has no effect on skeletons");
+  refuses("--skeleton one.swc --skeleton two.swc --skeleton a.swc --output out --mean --up x",
+          "--up has no effect on skeletons");
+}
+
+BOOST_AUTO_TEST_CASE(other_units_and_origins_are_reported)
+{
+  const orl_test::Tree a = swc("a.swc");
+  const Eigen::Matrix3d same = Eigen::Matrix3d::Identity();
+  pcs::IO::write_swc(path("mm.swc"), orl_test::moved(a, same, {0, 0, 0}, 1000));
+  pcs::IO::write_swc(path("map.swc"), orl_test::moved(a, same, {5e5, 5e6, 0}));
+  const auto warning = [&](const std::string& other) {
+    succeeds("--skeleton a.swc --skeleton " + other + " --lambda 0.5 --output places");
+    return err;
+  };
+  BOOST_TEST(warning("mm.swc").find("a.swc and mm.swc: the extents are") != std::string::npos, err);
+  BOOST_TEST(warning("map.swc").find("a.swc and map.swc: the roots are") != std::string::npos, err);
+  BOOST_TEST(warning("b.swc").find("check the") == std::string::npos, err);
 }
 
 BOOST_AUTO_TEST_CASE(correspondences_are_kept)

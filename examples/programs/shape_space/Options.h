@@ -53,6 +53,11 @@ struct Options
 
   bool is_given(const std::string& name) const { return given.count(name) > 0; }
   std::size_t number_of_trees() const { return std::max(trees.size(), skeletons.size()); }
+  /// Whether trees are rotated about the vertical to match others.
+  bool does_search_yaw() const
+  {
+    return align == "yaw" && (number_of_trees() == 2 || is_given("--align"));
+  }
   bool is_family() const
   {
     return do_mean || do_growth || number_of_modes > 0 || number_of_samples > 0 ||
@@ -310,6 +315,10 @@ inline void check_effects(const Options& o)
          "without --transport sinkhorn: exact transport has no regularization");
   refuse(o.distances.empty(), {"--metric"}, "without --distances");
   refuse(o.skeletons.empty(), {"--root-number"}, "without --skeleton");
+  refuse(!o.skeletons.empty() && !o.does_search_yaw(),
+         {"--up"},
+         "on skeletons that are not rotated about the vertical; with more than two trees, give "
+         "--align yaw");
   refuse(o.load.empty() && o.skeletons.empty(),
          {"--extend-axes"},
          "without --skeleton: extracted axes already extend to the end of the points");

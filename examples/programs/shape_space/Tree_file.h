@@ -36,7 +36,8 @@ struct Tree_file
 {
   Skeleton skeleton;
   pcs::IO::Point_table points;
-  std::vector<std::int64_t> ids; ///< ids of the nodes in the file
+  std::vector<std::int64_t> ids;           ///< ids of the nodes in the file
+  std::size_t number_of_trees_in_file = 1; ///< of skeletons
   bool has_valid_normals = false;
   std::size_t number_of_bad_normals = 0; ///< zero or not finite
 };
@@ -57,6 +58,7 @@ inline std::string read_skeleton(const std::string& path, Root_number root, Tree
   pcs::IO::Tree_selection selection = read(root.is_common ? 1 : root.value);
   if (root.is_common && root.value != 1 && selection.number_of_trees > 1)
     selection = read(root.value);
+  tree.number_of_trees_in_file = selection.number_of_trees;
   const std::string warning = program::warning_of_selection(selection, "--root-number");
   return warning.empty() ? warning : path + ": " + warning;
 }
