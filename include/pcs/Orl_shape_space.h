@@ -468,7 +468,7 @@ public:
         \nptype `bool`
         \npdefault `false`
     \npend
-    \throws pcs::Invalid_input when `t` is not a tree of this space
+    \throws pcs::Invalid_input when `t` has another number of branches or edges than this space
     \par Complexity
     O(n log n) for n nodes of all trees of the space.
   */

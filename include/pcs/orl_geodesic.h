@@ -32,7 +32,7 @@ namespace pcs {
       `node_radius_map` in `np`, see `Orl_shape_space::skeleton()`; replaced
   \param out_points a container with `resize()`, replaced
   \param np named parameters of `build()`, `geodesic()` and `points()`; for a graph of Boost, also
-      of `skeleton()`
+      `node_point_map`, `node_radius_map` and `node_branch_map`
   \param np_a, np_b named parameters of `add()` for the trees
   \return the report of `build()`; if its status is `Status::cancelled`, the outputs are unchanged
 */

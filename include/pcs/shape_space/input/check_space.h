@@ -32,7 +32,8 @@ inline void check_handle(const Tree_family& family, std::size_t h, const char* c
     throw Invalid_input(std::string(caller) + ": there is no tree " + std::to_string(h));
 }
 
-/// `message`: "the tree is of another space", or the like.
+/// Compares the numbers of edges and branches only: coordinates of another space with the same
+/// numbers are accepted. `message`: "the tree is of another space", or the like.
 inline void check_coordinates(const Tree_family& family,
                               const Orl_coordinates& x,
                               const char* caller,
