@@ -11,6 +11,7 @@
 #include "tree_axes.h"
 #include <pcs/core/Tree_skeleton.h>
 #include <pcs/core/errors.h>
+#include <pcs/internal/text.h>
 
 #include <algorithm>
 #include <cmath>
@@ -160,6 +161,20 @@ private:
   std::vector<Radius_errors> m_errors;
 };
 
+/// Throws if the step cuts a tree into more than a million pieces.
+inline void check_step(double step, const std::vector<Axis_segment>& segments)
+{
+  constexpr double least = 1e-6; // of the length [-]
+  double length = 0;
+  for (const Axis_segment& s : segments)
+    length += s.length();
+  if (!(step > 0 && step >= least * length))
+    throw pcs::Invalid_input("measure_skeleton(): the sampling step is " +
+                             pcs::internal::to_text(step) +
+                             ", expected at least a millionth of the length of each tree, " +
+                             pcs::internal::to_text(least * length) + " (lengths in metres)");
+}
+
 template <class Kernel>
 double extent_along_z(const pcs::Tree_skeleton<Kernel>& tree)
 {
@@ -181,7 +196,8 @@ double extent_along_z(const pcs::Tree_skeleton<Kernel>& tree)
   are measured to the parent's axis.
 
   \param hits number of points on each node of `truth`; empty: the scan has points everywhere
-  \throws pcs::Invalid_input when a tree has no axis, or `hits` has another size than `truth`
+  \throws pcs::Invalid_input when a tree has no axis, `hits` has another size than `truth`, or the
+  sampling step is not positive or below 1e-6 of the length of a tree
 */
 template <class Kernel>
 Skeleton_accuracy measure_skeleton(const pcs::Tree_skeleton<Kernel>& truth,
@@ -195,6 +211,8 @@ Skeleton_accuracy measure_skeleton(const pcs::Tree_skeleton<Kernel>& truth,
   const std::vector<Axis_segment> segments = axis_segments<Kernel>(result);
   if (true_segments.empty() || segments.empty())
     throw pcs::Invalid_input("measure_skeleton(): a tree needs an edge of positive length");
+  internal::check_step(rules.sampling_step, true_segments);
+  internal::check_step(rules.sampling_step, segments);
   const std::vector<Axis_sample> true_samples = sample_axes(true_segments, rules.sampling_step);
   const std::vector<Axis_sample> samples = sample_axes(segments, rules.sampling_step);
   const auto true_hits = internal::nearest_axes(true_samples, Segment_tree(segments));

@@ -244,6 +244,12 @@ BOOST_AUTO_TEST_CASE(trees_without_axes_are_refused)
   BOOST_CHECK_THROW((pcs_bench::measure_skeleton<Kernel>(tree, {}, point)), pcs::Invalid_input);
   BOOST_CHECK_THROW((pcs_bench::measure_skeleton<Kernel>(Tree(), {}, tree)), pcs::Invalid_input);
   BOOST_CHECK_THROW((pcs_bench::measure_skeleton<Kernel>(tree, {1}, tree)), pcs::Invalid_input);
+  for (const double step : {0.0, 1e-9, std::nan("")}) {
+    Accuracy_rules rules;
+    rules.sampling_step = step;
+    BOOST_CHECK_THROW((pcs_bench::measure_skeleton<Kernel>(tree, {}, tree, rules)),
+                      pcs::Invalid_input);
+  }
 }
 
 BOOST_AUTO_TEST_CASE(the_nearest_axis_and_surface_agree_with_a_search_of_all)
