@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSL-1.0
 // Compares a skeleton in a file with the true one.
 
+#include "common/Distinct_files.h"
+#include "common/run_program.h"
 #include "measure_skeleton.h"
 #include "print_accuracy.h"
 #include <pcs/IO/internal/Output_file.h>
@@ -16,7 +18,6 @@
 #include <nlohmann/json.hpp>
 
 #include <cstddef>
-#include <exception>
 #include <filesystem>
 #include <iostream>
 #include <string>
@@ -79,8 +80,11 @@ int main(int argc, char** argv)
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_flag("--quiet", is_quiet, "print no tables");
-  try {
-    app.parse(argc, argv);
+  return program::run_program(app, argc, argv, "--truth truth.csv --result my.swc", [&] {
+    program::Distinct_files files;
+    for (const std::string& path : {truth_file, result_file, point_file})
+      files.add_input(path);
+    files.add_output(json_file);
     Tree truth, result;
     std::vector<std::size_t> hits, unused;
     read_tree(truth_file, truth, hits);
@@ -93,11 +97,6 @@ int main(int argc, char** argv)
       write_text(json_file, pcs_bench::to_json(accuracy).dump(2) + "\n");
     if (!is_quiet)
       pcs_bench::print(std::cout, accuracy);
-    return 0;
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e);
-  } catch (const std::exception& e) {
-    std::cerr << "evaluate_skeleton: " << e.what() << '\n';
-    return 1;
-  }
+    return true;
+  });
 }
