@@ -19,9 +19,12 @@ inline void warn_of_unit(const std::string& subject,
                          double breast_height,
                          std::vector<std::string>& sentences)
 {
-  constexpr double tallest =
-      100; // in units of the breast height; the tallest tree is 116 m high [-]
-  if (!(breast_height > 0 && height > tallest * breast_height))
+  // in units of the breast height; the tallest tree is 116 m high, plants that are scanned are
+  // higher than 3 cm [-]
+  constexpr double tallest = 100, lowest = 0.02;
+  const bool is_implausible =
+      height > tallest * breast_height || (height > 0 && height < lowest * breast_height);
+  if (!(breast_height > 0 && is_implausible))
     return;
   std::ostringstream sentence;
   sentence.precision(3);

@@ -149,6 +149,14 @@ BOOST_AUTO_TEST_CASE(implausible_results_say_so)
   report.stem_diameters = {0.2, 0.15};
   BOOST_TEST(warns_of(report, "2 stems with diameters of 0.2, 0.15"));
   report = plausible_tree();
+  BOOST_TEST(!warns_of(report, "another unit"));
+  report.height = 0.02; // it lies
+  BOOST_TEST(!warns_of(report, "another unit"));
+  report.max_root_distance = 0.02;
+  BOOST_TEST(warns_of(report, "the tree is 0.0154 times as high as breast height"));
+  report.max_root_distance = 200;
+  BOOST_TEST(warns_of(report, "the tree is 154 times as high as breast height"));
+  report = plausible_tree();
   report.coordinate_step = 0.004;
   BOOST_TEST(pcs::warnings(report).empty());
   report.coordinate_step = 0.5;

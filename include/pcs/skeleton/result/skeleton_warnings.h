@@ -223,7 +223,10 @@ inline std::vector<std::string> warnings(const Skeleton_report& r)
   std::vector<std::string> sentences;
   internal::warn_of_points(r, sentences);
   internal::warn_of_precision(r, sentences);
-  internal::warn_of_unit("the tree", r.height, r.breast_height, sentences);
+  internal::warn_of_unit("the tree",
+                         std::max(r.height, r.max_root_distance), // it may lie
+                         r.breast_height,
+                         sentences);
   if (!r.by_order.empty() && r.by_order.front().length > 0) {
     internal::warn_of_shape(r, sentences);
     internal::warn_of_stems(r, sentences);
