@@ -36,6 +36,7 @@ namespace shape_space {
                                                   std::size_t);                                    \
   template std::shared_ptr<const Tree_distribution> distribution_of_family<Tag>(                   \
       const Tree_family&);                                                                         \
+  template bool is_distribution_of<Tag>(const Tree_family&, const Tree_distribution&);             \
   template Orl_coordinates draw_tree<Tag>(const Tree_family&,                                      \
                                           const Tree_distribution&,                                \
                                           const std::vector<Tree_descriptors>&,                    \

@@ -108,10 +108,11 @@ Orl_tree sample_tree(const Orl_shape_space<Kernel, ConcurrencyTag>& space,
   const Tree_sampling_options options = shape_space::read_sampling_options(np, caller);
   const shape_space::Tree_family& family = space.family();
   shape_space::check_built(family, caller);
-  pcs::internal::check(from.distribution && from.descriptors.size() == space.number_of_trees() &&
-                           from.distribution->is_of(family.layout, family.has),
-                       caller,
-                       "the distribution is of another space");
+  pcs::internal::check(
+      from.distribution && from.descriptors.size() == space.number_of_trees() &&
+          shape_space::is_distribution_of<ConcurrencyTag>(family, *from.distribution),
+      caller,
+      "the distribution is of another space");
   const std::vector<double> scan_weights =
       internal::draw_scan_weights(space.number_of_trees(), seed, index);
   const std::size_t trials = options.do_keep_in_range ? options.number_of_trials : 1;

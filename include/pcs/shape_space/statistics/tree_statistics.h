@@ -39,6 +39,10 @@ Mode_coordinates project_on_modes(const Tree_family& family,
 template <class ConcurrencyTag>
 std::shared_ptr<const Tree_distribution> distribution_of_family(const Tree_family& family);
 
+/// Returns whether the trees of the distribution have the branches and edges of the family.
+template <class ConcurrencyTag>
+bool is_distribution_of(const Tree_family& family, const Tree_distribution& distribution);
+
 /// Draws a random tree and brings its descriptors into the range of `descriptors` as far as
 /// `options` require it. `do_limit_lengths`: whether lengths are changed, too.
 template <class ConcurrencyTag>

@@ -75,6 +75,12 @@ std::shared_ptr<const Tree_distribution> distribution_of_family(const Tree_famil
 }
 
 template <class ConcurrencyTag>
+bool is_distribution_of(const Tree_family& family, const Tree_distribution& distribution)
+{
+  return distribution.is_of(family.layout, family.has);
+}
+
+template <class ConcurrencyTag>
 Orl_coordinates draw_tree(const Tree_family& family,
                           const Tree_distribution& distribution,
                           const std::vector<Tree_descriptors>& descriptors,
