@@ -34,7 +34,7 @@ Places random_places(std::size_t n, double side, const Inside& is_inside)
 
 bool covers(const Places& places, double least_side = 0)
 {
-  return pcs::skeleton::covers_area(places, 5, least_side, 0.7);
+  return pcs::skeleton::covers_area(places, 5, least_side, 0.5);
 }
 
 } // namespace

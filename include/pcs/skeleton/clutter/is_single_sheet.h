@@ -68,6 +68,12 @@ struct Sheet_disc
                  places.end());
   }
 
+  /// Returns the side of a cell that contains `crowd` of the points in a uniform distribution.
+  double cell_of(double crowd) const
+  {
+    return std::sqrt(crowd * area() / double(std::max<std::size_t>(1, places.size())));
+  }
+
   /// Returns whether the fraction `share` of the cells of the disc contains points; `false` for few
   /// points or cells.
   bool is_filled(double cell, double share) const

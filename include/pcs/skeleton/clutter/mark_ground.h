@@ -35,8 +35,9 @@ struct Ground_options
 {
   double noise = 4;    ///< thickness of ground, in multiples of the terrain noise [-]
   double crowd = 5;    ///< median points of a cell of the ground, see `covers_area()` [count],
-  double flat = 3;     ///< least side of these cells, in thicknesses of the ground [-], ...
-  double spread = 0.7; ///< ... and least fraction of their neighbours that contain points [-]
+  double flat = 2;     ///< least side of these cells, in thicknesses of the ground [-], ...
+  double spread = 0.5; ///< ... and least fraction of their neighbours that contain points [-]
+  double round = 0.55; ///< without a stem: least fraction of filled cells in a disc [-]
   double width = 3;    ///< least distance of its farthest points from the stem, in stem widths [-]
   double lying = 0.01; ///< least ratio of other points to ground if there is no stem [-]
   double bin = 0.01;   ///< height of a bin / vertical extent; the height is at least 4 spacings [-]
@@ -260,6 +261,17 @@ private:
     return places;
   }
 
+  /// Returns whether points fill a disc. The lower side of a lying stem does not.
+  bool is_round(const std::vector<Index>& points) const
+  {
+    Vec3 center = Vec3::Zero();
+    for (const Index i : points)
+      center += m_scan.points[i] / double(points.size());
+    const Vec3 e1 = m_up.unitOrthogonal();
+    const Sheet_disc sheet(m_scan, points, center, e1, m_up.cross(e1));
+    return sheet.is_filled(sheet.cell_of(m_rules.crowd), m_rules.round);
+  }
+
   bool is_filled(const std::vector<Index>& points, const Stem_foot& foot) const
   {
     const Vec3 e1 = m_up.unitOrthogonal();
@@ -293,7 +305,7 @@ private:
         find_foot(m_scan, stem_in_bins(m_scan, m_links, height, is_standing, bins), m_up);
     if (!foot) { // such as a lying stem
       const auto standing = std::count(is_standing.begin(), is_standing.end(), 1);
-      if (double(standing) >= m_rules.lying * double(layer.size()))
+      if (double(standing) >= m_rules.lying * double(layer.size()) && is_round(layer))
         m_points = layer;
       return;
     }
