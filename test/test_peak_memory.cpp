@@ -58,7 +58,7 @@ Tree tree_of(std::uint64_t seed)
 }
 
 /// Bytes per point of a pillar whose points are all samples.
-constexpr double most_without_sampling = 1400;
+constexpr double most_without_sampling = 1600;
 
 /// Returns the largest number of bytes per point that `work()` allocates at a time.
 template <class Work>
