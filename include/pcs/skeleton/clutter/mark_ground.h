@@ -33,11 +33,12 @@ namespace skeleton {
 /// Criteria for a terrain to be ground: an area of any outline, much wider than the stem above it.
 struct Ground_options
 {
-  double noise = 4;    ///< thickness of ground, in multiples of the terrain noise [-]
-  double crowd = 5;    ///< median points of a cell of the ground, see `covers_area()` [count],
-  double flat = 2;     ///< least side of these cells, in thicknesses of the ground [-], ...
-  double spread = 0.5; ///< ... and least fraction of their neighbours that contain points [-]
-  double round = 0.55; ///< without a stem: least fraction of filled cells in a disc [-]
+  double noise = 4;     ///< thickness of ground, in multiples of the terrain noise [-]
+  double crowd = 5;     ///< median points of a cell of the ground, see `covers_area()` [count],
+  double flat = 3;      ///< least side of these cells, in thicknesses of the ground [-], ...
+  double spread = 0.75; ///< ... and least fraction of their neighbours that contain points [-]
+  double round = 0.55;  ///< otherwise, least fraction of filled cells in a disc [-]
+  bool do_accept_areas = true; ///< whether areas other than discs may be ground
   double width = 3;    ///< least distance of its farthest points from the stem, in stem widths [-]
   double lying = 0.01; ///< least ratio of other points to ground if there is no stem [-]
   double bin = 0.01;   ///< height of a bin / vertical extent; the height is at least 4 spacings [-]
@@ -261,7 +262,7 @@ private:
     return places;
   }
 
-  /// Returns whether points fill a disc. The lower side of a lying stem does not.
+  /// Returns whether points fill a disc.
   bool is_round(const std::vector<Index>& points) const
   {
     Vec3 center = Vec3::Zero();
@@ -298,14 +299,17 @@ private:
     }
     if (layer.empty())
       return;
-    if (!covers_area(places_of(layer), m_rules.crowd, m_rules.flat * thickness, m_rules.spread))
+    const bool is_area =
+        m_rules.do_accept_areas &&
+        covers_area(places_of(layer), m_rules.crowd, m_rules.flat * thickness, m_rules.spread);
+    if (!is_area && !is_round(layer))
       return;
     const Low_bins bins(m_scan, height, m_rules, is_standing);
     const auto foot =
         find_foot(m_scan, stem_in_bins(m_scan, m_links, height, is_standing, bins), m_up);
     if (!foot) { // such as a lying stem
       const auto standing = std::count(is_standing.begin(), is_standing.end(), 1);
-      if (double(standing) >= m_rules.lying * double(layer.size()) && is_round(layer))
+      if (double(standing) >= m_rules.lying * double(layer.size()))
         m_points = layer;
       return;
     }
