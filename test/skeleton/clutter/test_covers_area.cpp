@@ -34,7 +34,7 @@ Places random_places(std::size_t n, double side, const Inside& is_inside)
 
 bool covers(const Places& places, double least_side = 0)
 {
-  return pcs::skeleton::covers_area(places, 5, least_side, 0.5);
+  return pcs::skeleton::covers_area(places, 5, least_side, 0.75);
 }
 
 } // namespace
@@ -94,6 +94,10 @@ BOOST_AUTO_TEST_CASE(degenerate_points_are_no_areas)
 {
   BOOST_TEST(!covers({}));
   BOOST_TEST(!covers(Places(1000, {1, 2})));
+  Places few;
+  for (int i = 0; i < 40000; ++i)
+    few.push_back({double(i % 40), double(i % 40 * 7 % 40)});
+  BOOST_TEST(!covers(few)); // a thousand equal points in each of forty places
   BOOST_TEST(!covers(Places(1000, {1, 2}), 0.1));
   BOOST_TEST(!covers(random_places(89, 1, [](double, double) { return true; })));
   BOOST_TEST(covers(random_places(400, 1, [](double, double) { return true; })));

@@ -105,21 +105,22 @@ inline bool covers_area(const std::vector<std::array<double, 2>>& places,
 {
   constexpr std::size_t fewest_points = 90, fewest_cells = 13;
   constexpr int passes = 16;
-  constexpr double same = 0.05; // relative change of the side that ends the iteration [-]
+  constexpr double same = 0.05;   // relative change of the side that ends the iteration [-]
+  constexpr double finest = 1e-6; // least side for equal points, in extents of all points [-]
   if (places.size() < fewest_points)
     return false;
-  double cell =
-      std::max(least_side,
-               internal::largest_extent(places) * std::sqrt(crowd / double(places.size())));
-  for (int pass = 0; pass < passes && cell > 0 && std::isfinite(cell); ++pass) {
+  const double extent = internal::largest_extent(places);
+  const double least = std::max(least_side, finest * extent);
+  if (!(least > 0) || !std::isfinite(least))
+    return false;
+  double cell = std::max(least, extent * std::sqrt(crowd / double(places.size())));
+  for (int pass = 0; pass < passes; ++pass) {
     const auto count = double(internal::Grid_cells(places, cell).median_count());
-    const double next = std::max(least_side, cell * std::sqrt(crowd / count));
+    const double next = std::max(least, cell * std::sqrt(crowd / count));
     if (std::abs(next - cell) <= same * cell)
       break;
     cell = next;
   }
-  if (!(cell > 0) || !std::isfinite(cell))
-    return false;
   double fraction = 0;
   for (const double x : {0.0, 0.5})
     for (const double y : {0.0, 0.5}) {

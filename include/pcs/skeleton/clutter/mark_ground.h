@@ -30,17 +30,18 @@
 namespace pcs {
 namespace skeleton {
 
-/// Criteria for a terrain to be ground: an area of any outline, much wider than the stem above it.
+/// Criteria for a terrain to be ground: a filled disc or an area of any outline, much wider than the
+/// stem above it.
 struct Ground_options
 {
-  double noise = 4;     ///< thickness of ground, in multiples of the terrain noise [-]
-  double crowd = 5;     ///< median points of a cell of the ground, see `covers_area()` [count],
-  double flat = 3;      ///< least side of these cells, in thicknesses of the ground [-], ...
-  double spread = 0.75; ///< ... and least fraction of their neighbours that contain points [-]
-  double round = 0.55;  ///< otherwise, least fraction of filled cells in a disc [-]
-  bool do_accept_areas = true; ///< whether areas other than discs may be ground
-  double width = 3;    ///< least distance of its farthest points from the stem, in stem widths [-]
-  double lying = 0.01; ///< least ratio of other points to ground if there is no stem [-]
+  double noise = 4;            ///< thickness of ground, in multiples of the terrain noise [-]
+  double crowd = 5;            ///< points per cell of the ground [count]
+  double round = 0.55;         ///< least fraction of these cells in a disc that contain points [-]
+  bool do_accept_areas = true; ///< otherwise, whether other areas may be ground, `covers_area()`:
+  double spread = 0.75; ///< least fraction of the neighbours of cells that contain points [-]
+  double flat = 3;      ///< least side of the cells, in thicknesses of the ground [-]
+  double width = 3;     ///< least distance of its farthest points from the stem, in stem widths [-]
+  double lying = 0.01;  ///< least ratio of other points to ground if there is no stem [-]
   double bin = 0.01;   ///< height of a bin / vertical extent; the height is at least 4 spacings [-]
   int bins = 12;       ///< lowest bins for the search of the stem [count]
   double keep = 2;     ///< radius around the stem without search of plants, in stem widths [-]
@@ -262,21 +263,32 @@ private:
     return places;
   }
 
+  Sheet_disc disc(const std::vector<Index>& points, const Vec3& center) const
+  {
+    const Vec3 e1 = m_up.unitOrthogonal();
+    return Sheet_disc(m_scan, points, center, e1, m_up.cross(e1));
+  }
+
   /// Returns whether points fill a disc.
   bool is_round(const std::vector<Index>& points) const
   {
     Vec3 center = Vec3::Zero();
     for (const Index i : points)
       center += m_scan.points[i] / double(points.size());
-    const Vec3 e1 = m_up.unitOrthogonal();
-    const Sheet_disc sheet(m_scan, points, center, e1, m_up.cross(e1));
+    const Sheet_disc sheet = disc(points, center);
     return sheet.is_filled(sheet.cell_of(m_rules.crowd), m_rules.round);
+  }
+
+  /// Returns whether points cover an area of any outline.
+  bool is_area(const std::vector<Index>& points, double thickness) const
+  {
+    return m_rules.do_accept_areas &&
+           covers_area(places_of(points), m_rules.crowd, m_rules.flat * thickness, m_rules.spread);
   }
 
   bool is_filled(const std::vector<Index>& points, const Stem_foot& foot) const
   {
-    const Vec3 e1 = m_up.unitOrthogonal();
-    const Sheet_disc sheet(m_scan, points, foot.center, e1, m_up.cross(e1));
+    const Sheet_disc sheet = disc(points, foot.center);
     return sheet.is_filled(std::max(sheet.radius / m_rules.sheet.cells, 3 * m_scan.spacing),
                            m_rules.filled);
   }
@@ -299,10 +311,7 @@ private:
     }
     if (layer.empty())
       return;
-    const bool is_area =
-        m_rules.do_accept_areas &&
-        covers_area(places_of(layer), m_rules.crowd, m_rules.flat * thickness, m_rules.spread);
-    if (!is_area && !is_round(layer))
+    if (!is_round(layer) && !is_area(layer, thickness))
       return;
     const Low_bins bins(m_scan, height, m_rules, is_standing);
     const auto foot =
