@@ -30,8 +30,8 @@
 namespace pcs {
 namespace skeleton {
 
-/// Criteria for a terrain to be ground: a filled disc or an area of any outline, much wider than the
-/// stem above it.
+/// Criteria for a terrain to be ground: a filled disc or an area of any outline, much wider than
+/// the stem above it.
 struct Ground_options
 {
   double noise = 4;            ///< thickness of ground, in multiples of the terrain noise [-]
