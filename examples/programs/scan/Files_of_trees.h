@@ -5,6 +5,7 @@
 #ifndef PCS_EXAMPLES_PROGRAMS_SCAN_FILES_OF_TREES_H
 #define PCS_EXAMPLES_PROGRAMS_SCAN_FILES_OF_TREES_H
 
+#include "common/Distinct_files.h"
 #include "scan/tree_foot.h"
 #include <pcs/IO/Point_reader.h>
 #include <pcs/IO/internal/extensions.h>
@@ -40,13 +41,12 @@ public:
   /// Throws `pcs::Invalid_input` if another result has the name of a file of a tree.
   void check_result(const std::string& path) const
   {
-    const auto real = [](const std::filesystem::path& p) {
-      std::error_code error;
-      return std::filesystem::weakly_canonical(std::filesystem::absolute(p), error);
+    const auto folder_of = [](const std::filesystem::path& p) {
+      return std::filesystem::path(Distinct_files::real(p.string())).parent_path();
     };
     const std::filesystem::path file(path);
     if (!path.empty() && is_name(file.filename().string()) &&
-        real(file).parent_path() == real(m_folder / "x").parent_path())
+        folder_of(file) == folder_of(m_folder / "x"))
       throw pcs::Invalid_input(path + " has the name of a file of a tree in --folder; choose "
                                       "another name");
   }
