@@ -235,6 +235,36 @@ BOOST_AUTO_TEST_CASE(a_lying_stem_begins_at_its_end)
   BOOST_CHECK_CLOSE(report.total.volume, CGAL_PI * 0.0025 * 2, 5.0);
 }
 
+// As files with another vertical axis are read.
+BOOST_AUTO_TEST_CASE(a_tree_in_another_position_is_named)
+{
+  const Cloud& upright = pcs_test::small_scan().scan.points;
+  const auto has_warning = [](const pcs::Skeleton_report& report, const char* text) {
+    const std::vector<std::string> all = pcs::warnings(report);
+    return std::any_of(all.begin(), all.end(), [&](const std::string& warning) {
+      return warning.find(text) != std::string::npos;
+    });
+  };
+  Tree tree;
+  Cloud lying, inverted;
+  for (const Point& p : upright) {
+    lying.emplace_back(p.x(), p.z(), -p.y());
+    inverted.emplace_back(p.x(), -p.y(), -p.z());
+  }
+  const auto good = pcs::extract_tree_skeleton(upright, tree);
+  BOOST_TEST(good.inclination < 0.5);
+  BOOST_TEST(!has_warning(good, "up direction"));
+  const auto flat = pcs::extract_tree_skeleton(lying, tree);
+  BOOST_TEST(std::abs(flat.inclination - CGAL_PI / 2) < 0.5);
+  BOOST_TEST(has_warning(flat, "the tree lies"));
+  const auto reversed = pcs::extract_tree_skeleton(inverted, tree);
+  BOOST_TEST(reversed.inclination > CGAL_PI - 0.5);
+  BOOST_TEST(has_warning(reversed, "the tree is upside down"));
+  const auto mended =
+      pcs::extract_tree_skeleton(lying, tree, pcs::parameters::up_direction(Vector(0, 1, 0)));
+  BOOST_TEST(mended.inclination < 0.5);
+}
+
 BOOST_AUTO_TEST_CASE(a_hoop_is_a_few_long_branches)
 {
   Tree tree;

@@ -157,6 +157,88 @@ BOOST_AUTO_TEST_CASE(shrubs_on_the_ground_are_no_trunk)
   BOOST_CHECK_CLOSE(report.diameter_at_breast_height, 0.2, 3.0);
 }
 
+// A fence, stakes and a box are not connected with the tree; a branch that hangs down to the ground
+// is near the tree. A second stem is too tall for an object.
+BOOST_AUTO_TEST_CASE(objects_that_stand_on_the_ground_are_removed)
+{
+  const Vector x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+  Cloud points = cylinder(12000, 0.1, 6);
+  append(points, sheet(30000, 6, x, y, 0.01));
+  append(points, cylinder(3000, 0.02, 1.2, Point(0.05, 0, 1.25), Vector(1, 0, 0)));
+  append(points, cylinder(3000, 0.02, 1.2, Point(1.3, 0, 0.02), z)); // hangs from the branch
+  Tree tree;
+  const auto expected = pcs::extract_tree_skeleton(points, tree);
+  BOOST_CHECK_EQUAL(expected.number_of_object_points, 0u);
+  const std::size_t alone = points.size();
+  for (double at = -2; at <= 2; at += 1)
+    append(points, cylinder(2500, 0.04, 1.2, Point(at, 0.7, 0), z));
+  append(points, cylinder(8000, 0.03, 4, Point(-2, 0.7, 0.9), x));
+  append(points, cylinder(3000, 0.04, 2, Point(-0.5, -0.5, 0), z));
+  const std::size_t added = points.size() - alone;
+  const auto report = pcs::extract_tree_skeleton(points, tree);
+  check_is_a_tree(tree);
+  BOOST_TEST(double(report.number_of_object_points) > 0.9 * double(added)); // others are ground
+  BOOST_TEST(report.number_of_object_points <= added);
+  BOOST_CHECK_CLOSE(report.total.volume, expected.total.volume, 5.0);
+  BOOST_CHECK_CLOSE(report.total.length, expected.total.length, 10.0);
+  const auto post = pcs::extract_tree_skeleton(
+      points,
+      tree,
+      pcs::parameters::root_position(Point(-2, 0.7, 0))); // a post is named as the tree
+  BOOST_TEST(post.height < 1.5);
+  append(points, cylinder(9000, 0.08, 5, Point(-1, -1.5, 0), z));
+  const auto other = pcs::extract_tree_skeleton(points, tree);
+  BOOST_CHECK_CLOSE(other.height, 6, 1.0);
+  BOOST_CHECK_EQUAL(other.number_of_other_stems, 1u);
+}
+
+// A post and a fence that the branches of the tree touch are no branches of it.
+BOOST_AUTO_TEST_CASE(objects_that_the_tree_touches_are_removed)
+{
+  const Vector x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+  Cloud points = cylinder(12000, 0.1, 6);
+  append(points, sheet(30000, 6, x, y, 0.01));
+  for (const double height : {1.5, 2.5, 3.5}) {
+    append(points, cylinder(3000, 0.02, 1.5, Point(0.05, 0, height), Vector(1, 0, 0)));
+    append(points, cylinder(3000, 0.02, 1.5, Point(0, 0.05, height), Vector(0, 1, 0)));
+  }
+  Tree tree;
+  const auto expected = pcs::extract_tree_skeleton(points, tree);
+  BOOST_CHECK_EQUAL(expected.number_of_standing_branches, 0u);
+  append(points, cylinder(8000, 0.05, 4, Point(1.5, 0.02, 0), z)); // at the tips of branches
+  for (double at = -2; at <= 2; at += 1)
+    append(points, cylinder(3000, 0.04, 1.6, Point(at, 1.45, 0), z));
+  append(points, cylinder(9000, 0.03, 4, Point(-2, 1.45, 1.52), x)); // below a branch
+  const auto report = pcs::extract_tree_skeleton(points, tree);
+  check_is_a_tree(tree);
+  BOOST_TEST(report.number_of_standing_branches > 3u);
+  BOOST_TEST(!pcs::warnings(report).empty());
+  BOOST_CHECK_CLOSE(report.total.volume, expected.total.volume, 10.0);
+  BOOST_CHECK_CLOSE(report.total.length, expected.total.length, 15.0);
+}
+
+// The tank has more points than the tree, and more links to the crown than the stem.
+BOOST_AUTO_TEST_CASE(a_tank_that_the_crown_touches_is_not_the_foot)
+{
+  const Vector x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+  Cloud points = cylinder(9000, 0.06, 4);
+  append(points, sheet(30000, 6, x, y, 0.01));
+  for (double height = 1.4; height < 3.6; height += 0.2)
+    for (const double side : {-0.4, 0.0, 0.4})
+      append(points, cylinder(2000, 0.012, 1, Point(0, 0.05, height), Vector(side, 1, 0)));
+  Tree tree;
+  const auto expected = pcs::extract_tree_skeleton(points, tree);
+  append(points, cylinder(40000, 0.35, 1.8, Point(0, 1.2, 0), z));
+  const auto report = pcs::extract_tree_skeleton(points, tree);
+  check_is_a_tree(tree);
+  const Point root = tree[tree[boost::graph_bundle].root].point;
+  BOOST_TEST(std::hypot(root.x(), root.y()) < 0.06);
+  BOOST_CHECK_CLOSE(report.height, 4, 3.0);
+  BOOST_CHECK_CLOSE(report.diameter_at_breast_height, 0.12, 5.0);
+  BOOST_CHECK_CLOSE(report.total.volume, expected.total.volume, 20.0);
+  BOOST_TEST(!pcs::warnings(report).empty());
+}
+
 // A roof alone has the shape of a terrain, with a short piece of the stem below it.
 BOOST_AUTO_TEST_CASE(a_roof_is_no_ground)
 {

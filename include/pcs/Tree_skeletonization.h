@@ -142,8 +142,8 @@ public:
           how sections are connected, and the radii of sparse branches
         \nptype `Slice_options`
         \npdefault the published options
-      \np{do_remove_ground} whether ground around the foot and flat faces such as walls and roofs
-          are removed
+      \np{do_remove_ground} whether ground around the foot, separate objects that stand on it, and
+          flat faces such as walls and roofs are removed
         \nptype `bool`
         \npdefault `true`
       \np{breast_height} height above the root at which the diameter in the report is measured. The

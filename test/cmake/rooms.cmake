@@ -97,8 +97,10 @@ set(skeleton_stages
   scan/prepare_scan.h
   scan/thin_dense_points.h
   slices/section_skeleton.h)
+set(skeleton_branching clutter/Ground.h)
 set(skeleton_clutter
   graph/Neighbor_graph.h
+  graph/shortest_paths.h
   layers/Stem_foot.h
   scan/Point_labels.h
   scan/leave_out_strays.h)

@@ -25,6 +25,7 @@ inline std::string in_options(std::string sentence)
         std::make_pair("do_register_stations(false)", "--keep-stations"),
         std::make_pair("root_position", "--root"),
         std::make_pair("given_skeleton", "--skeleton"),
+        std::make_pair("up_direction", "--up"),
         std::make_pair("unit of breast_height", "unit of --breast-height"),
         std::make_pair("skeleton_method(level_sets)", "--method level_sets"),
         std::make_pair("skeleton_method(chains)", "--method chains"),
@@ -110,6 +111,7 @@ inline nlohmann::ordered_json to_json(const std::string& input, const pcs::Skele
                     {"outliers", r.number_of_outliers},
                     {"leaves", r.number_of_leaf_points},
                     {"ground", r.number_of_ground_points},
+                    {"objects", r.number_of_object_points},
                     {"walls", r.number_of_wall_points},
                     {"unexplained", r.number_of_unexplained_points},
                     {"unexplained_thick", r.number_of_unexplained_thick_points},
@@ -124,6 +126,7 @@ inline nlohmann::ordered_json to_json(const std::string& input, const pcs::Skele
   json["nodes"] = r.number_of_nodes;
   json["branches"] = r.number_of_branches;
   json["unreachable_branches"] = r.number_of_unreached_branches;
+  json["standing_branches"] = r.number_of_standing_branches;
   json["other_stems"] = r.number_of_other_stems;
   json["in_rows"] = r.is_in_rows;
   json["stations"] = nlohmann::ordered_json::array();
@@ -134,6 +137,7 @@ inline nlohmann::ordered_json to_json(const std::string& input, const pcs::Skele
     json["warnings"].push_back(in_options(sentence));
   json["height"] = r.height;
   json["root_elevation"] = r.root_elevation;
+  json["inclination"] = r.inclination;
   json["max_root_distance"] = r.max_root_distance;
   json["hidden_trunk_length"] = r.hidden_trunk_length;
   json["hidden_trunk_volume"] = r.hidden_trunk_volume;

@@ -94,7 +94,12 @@ struct Skeleton_report
   //! points removed by `wood_map` or `do_remove_leaves` [count]
   std::size_t number_of_leaf_points = 0;
   std::size_t number_of_ground_points = 0; ///< points removed as ground [count]
-  std::size_t number_of_wall_points = 0;   ///< points removed as walls or other flat faces [count]
+  //! points removed as objects that stand on the ground beside the tree, such as posts and shrubs
+  //! [count]
+  std::size_t number_of_object_points = 0;
+  //! axes of such objects that are near the tree or touch it [count]
+  std::size_t number_of_standing_branches = 0;
+  std::size_t number_of_wall_points = 0; ///< points removed as walls or other flat faces [count]
   std::size_t number_of_unexplained_points = 0; ///< other points not assigned to a branch [count]
   //! those of them around the base of a thick branch that no thick wood joins to the tree [count]
   std::size_t number_of_unexplained_thick_points = 0;
@@ -141,6 +146,9 @@ struct Skeleton_report
   bool is_root_given = false;     ///< whether `root_position` was given
   bool is_skeleton_given = false; ///< whether `given_skeleton` was given
   double max_root_distance = 0;   ///< from the root to the farthest node [L]
+  //! angle between the up direction and the main direction of the wood from thick to thin: pi / 2
+  //! for a lying tree, pi for a tree that is upside down; 0 if no direction prevails [rad]
+  double inclination = 0;
   //! inferred length of the trunk at the top of the tree, where leaves hide it; 0: none was
   //! inferred [L]
   double hidden_trunk_length = 0;
@@ -240,8 +248,9 @@ inline std::ostream& operator<<(std::ostream& out, const Skeleton_report& r)
   out << "status " << r.status << ", " << r.number_of_points << " points ("
       << r.number_of_duplicates << " duplicates, " << r.number_of_outliers << " outliers, "
       << r.number_of_leaf_points << " leaves, " << r.number_of_ground_points << " on the ground, "
-      << r.number_of_wall_points << " on walls, " << r.number_of_unexplained_points
-      << " unexplained, " << r.number_of_unexplained_thick_points << " of them on thick branches, "
+      << r.number_of_object_points << " on objects beside the tree, " << r.number_of_wall_points
+      << " on walls, " << r.number_of_unexplained_points << " unexplained, "
+      << r.number_of_unexplained_thick_points << " of them on thick branches, "
       << r.number_of_unreached_points << " out of reach), " << r.number_of_other_stems
       << " other stems, " << r.number_of_branches << " branches, " << r.number_of_nodes
       << " nodes, spacing " << r.spacing << ", noise " << r.noise << ", residual " << r.residual

@@ -89,10 +89,10 @@ BOOST_AUTO_TEST_CASE(what_was_fused_by_its_bases_comes_apart_where_nothing_reach
   BOOST_TEST(set.axes[0].meeting == 11u);
   std::vector<Joint> joints(2);
   joints[0].parent = 1;
-  BOOST_TEST(split_unreachable_axes(scan, 0.1, joints, 1, set) == 0u); // reachable
-  BOOST_TEST(split_unreachable_axes(scan, 0.1, {Joint(), Joint()}, 0, set) == 0u);
-  BOOST_TEST(split_unreachable_axes(scan, 0.02, {Joint(), Joint()}, 1, set) == 0u); // unreachable
-  BOOST_TEST(split_unreachable_axes(scan, 0.1, {Joint(), Joint()}, 1, set) == 1u);
+  BOOST_TEST(split_unreachable_axes(scan, 0.1, joints, {1}, set) == 0u); // reachable
+  BOOST_TEST(split_unreachable_axes(scan, 0.1, {Joint(), Joint()}, {0}, set) == 0u);
+  BOOST_TEST(split_unreachable_axes(scan, 0.02, {Joint(), Joint()}, {1}, set) == 0u); // unreachable
+  BOOST_TEST(split_unreachable_axes(scan, 0.1, {Joint(), Joint()}, {1}, set) == 1u);
   BOOST_TEST_REQUIRE(set.axes.size() == 3u);
   for (const std::size_t a : {0u, 2u}) {
     const Fitted_axis& old = before.axes[a == 0 ? 0 : 1];

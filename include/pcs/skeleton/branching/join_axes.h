@@ -21,6 +21,10 @@
 // subject to g <= max(reach u, long_reach length). Radii in ratios are at least thinnest u;
 // direction [-] is the certainty of the base of the branch.
 //
+// An axis beside the foot may stand on the ground instead, which costs as much as a joint with a
+// vertical parent at the distance of its lower end from the ground, plus `standing`. It is then an
+// object or another stem, as are all axes that are joined to it.
+//
 // Every axis takes its joint of least cost. Cycles are then resolved one axis at a time by the
 // least additional cost, which need not minimise the sum of all costs.
 
@@ -29,6 +33,7 @@
 
 #include <pcs/internal/parallel.h>
 #include <pcs/neighborhood/Nearest_neighbors.h>
+#include <pcs/skeleton/branching/heights_above_ground.h>
 #include <pcs/skeleton/model/Axis.h>
 #include <pcs/skeleton/model/Axis_set.h>
 #include <pcs/skeleton/model/Joint.h>
@@ -70,6 +75,8 @@ struct Joint_options
   double free_share = 0.37; ///< ... above this ratio
   double taper = 0.85;      ///< gain of a base thicker than the tip, per log ratio
   double reversal = 1.1;    ///< cost of the tip as the base
+  double standing = 3;      ///< least gain of an axis that stands on the ground beside the tree
+  double apart = 4;         ///< least distance of its lower end from the foot, in stem widths
   double thinnest = 0.1;    ///< lower bound on radii when ratios are computed
 };
 
@@ -143,6 +150,17 @@ public:
   template <class ConcurrencyTag>
   std::vector<Joint> run(const std::vector<Index>& roots) const
   {
+    std::vector<Index> standing;
+    return run<ConcurrencyTag>(roots, {}, Vec3::UnitZ(), standing);
+  }
+  /// Selects the joints, and adds the axes that stand on the ground to `standing`. `heights`: of
+  /// both ends of every axis above the ground [L]; may be empty.
+  template <class ConcurrencyTag>
+  std::vector<Joint> run(const std::vector<Index>& roots,
+                         const End_heights& heights,
+                         const Vec3& up,
+                         std::vector<Index>& standing) const
+  {
     const std::size_t n = m_set.axes.size();
     std::vector<std::uint8_t> is_root(n, 0);
     for (const Index root : roots)
@@ -159,9 +177,16 @@ public:
     for (std::size_t a = 0; a < n; ++a)
       if (!options[a].empty())
         joints[a] = options[a].front().joint();
+    for (Index a = 0; a < heights.size(); ++a)
+      if (!is_root[a] && standing_cost(a, heights[a], up) < joints[a].cost) {
+        joints[a] = Joint();
+        standing.push_back(a);
+      }
     Joint_tree tree(joints);
-    for (const Index root : roots)
-      for (const Index a : tree.reach(root))
+    std::vector<Index> starts = roots;
+    starts.insert(starts.end(), standing.begin(), standing.end());
+    for (const Index start : starts)
+      for (const Index a : tree.reach(start))
         std::vector<Option>().swap(options[a]); // large
     change_joints(options, tree, joints);
     return joints;
@@ -302,6 +327,10 @@ private:
     const double thinnest = m_rules.thinnest * m_spacing;
     return std::max(r, thinnest) / std::max(to, thinnest);
   }
+  /// An end of an axis, and the cost of this end as the base.
+  std::pair<internal::Axis_end, double> base_of(Index a, bool is_tip) const;
+  /// Returns the cost of an axis that stands on the ground.
+  double standing_cost(Index a, const std::array<double, 2>& heights, const Vec3& up) const;
   std::vector<Option> options_of(Index a) const;
   static void change_joints(const std::vector<std::vector<Option>>& options,
                             Joint_tree& tree,
@@ -403,6 +432,34 @@ inline std::vector<Axis_joiner::Node> Axis_joiner::nodes_near(const Vec3& place,
   return near;
 }
 
+inline std::pair<internal::Axis_end, double> Axis_joiner::base_of(Index a, bool is_tip) const
+{
+  const Axis& axis = m_set.axes[a].axis;
+  const double length = std::min(std::max(m_rules.base_length * m_spacing, 2 * axis.front().radius),
+                                 0.7 * length_of(axis));
+  const internal::Axis_end end = internal::end_of(axis, is_tip, length);
+  const internal::Axis_end other = internal::end_of(axis, !is_tip, length);
+  return {end,
+          (is_tip ? m_rules.reversal * m_set.axes[a].direction : 0) -
+              m_rules.taper * std::log(radius_ratio(end.radius, other.radius))};
+}
+
+inline double
+Axis_joiner::standing_cost(Index a, const std::array<double, 2>& heights, const Vec3& up) const
+{
+  double least = std::numeric_limits<double>::infinity();
+  for (const bool is_tip : {false, true}) {
+    const double height = heights[is_tip ? 1 : 0];
+    if (height > m_rules.reach * m_spacing)
+      continue;
+    const auto [end, cost_of_end] = base_of(a, is_tip);
+    least = std::min(least,
+                     gap_cost(height) + m_rules.tie * height / m_spacing + angle_cost(end, up) +
+                         cost_of_end + m_rules.standing);
+  }
+  return least;
+}
+
 inline std::vector<Axis_joiner::Option> Axis_joiner::options_of(Index a) const
 {
   std::vector<Option> options;
@@ -410,13 +467,7 @@ inline std::vector<Axis_joiner::Option> Axis_joiner::options_of(Index a) const
   const Axis& axis = m_set.axes[a].axis;
   const double reach = std::max(m_rules.reach * m_spacing, m_rules.long_reach * length_of(axis));
   for (const bool is_tip : {false, true}) {
-    const double length =
-        std::min(std::max(m_rules.base_length * m_spacing, 2 * axis.front().radius),
-                 0.7 * length_of(axis));
-    const internal::Axis_end end = internal::end_of(axis, is_tip, length);
-    const internal::Axis_end other = internal::end_of(axis, !is_tip, length);
-    const double cost_of_end = (is_tip ? m_rules.reversal * m_set.axes[a].direction : 0) -
-                               m_rules.taper * std::log(radius_ratio(end.radius, other.radius));
+    const auto [end, cost_of_end] = base_of(a, is_tip);
     const std::vector<Node> near = nodes_near(end.point, reach);
     for (std::size_t i = 0; i < near.size();) {
       const Index b = near[i].first;

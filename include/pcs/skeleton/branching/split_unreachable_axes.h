@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace pcs {
@@ -21,19 +22,22 @@ namespace skeleton {
   with adjacent bases belong either to one branch that another branch crosses, or to two branches on
   opposite sides of a third branch. The second case is assumed if the fused axis is unreachable from
   the root, but a reachable axis lies within `reach` [L] of this position. Both pieces then become
-  separate axes that begin there. `joints` are the joints of the axes, and `root` is the axis
-  of the root. Returns the number of additional axes. O(axes log points + points).
+  separate axes that begin there. `joints` are the joints of the axes, and `roots` are axes
+  that need none. Returns the number of additional axes. O(axes log points + points).
 */
 inline std::size_t split_unreachable_axes(const Scan& scan,
                                           double reach,
                                           const std::vector<Joint>& joints,
-                                          Index root,
+                                          const std::vector<Index>& roots,
                                           Axis_set& set)
 {
   const std::size_t n = set.axes.size();
   std::vector<Index> other(n, none),
       meeting(n, 0); // new axis of the second piece, index of its first node
-  const auto is_reached = [&](Index a) { return a == root || joints[a].parent != none; };
+  std::vector<std::uint8_t> is_root(n, 0);
+  for (const Index root : roots)
+    is_root[root] = 1;
+  const auto is_reached = [&](Index a) { return is_root[a] || joints[a].parent != none; };
   for (Index a = 0; a < n; ++a) {
     const std::size_t m = set.axes[a].meeting, size = set.axes[a].axis.size();
     if (is_reached(a) || m < 2 || m + 2 > size)

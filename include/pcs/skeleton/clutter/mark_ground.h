@@ -6,9 +6,12 @@
 #define PCS_SKELETON_CLUTTER_MARK_GROUND_H
 
 #include <pcs/internal/median.h>
+#include <pcs/skeleton/clutter/Ground.h>
 #include <pcs/skeleton/clutter/Terrain.h>
 #include <pcs/skeleton/clutter/covers_area.h>
+#include <pcs/skeleton/clutter/find_objects.h>
 #include <pcs/skeleton/clutter/is_single_sheet.h>
+#include <pcs/skeleton/clutter/stem_in_bins.h>
 #include <pcs/skeleton/graph/Neighbor_graph.h>
 #include <pcs/skeleton/layers/Stem_foot.h>
 #include <pcs/skeleton/model/Scan.h>
@@ -42,15 +45,15 @@ struct Ground_options
   double flat = 3;      ///< least side of the cells, in thicknesses of the ground [-]
   double width = 3;     ///< least distance of its farthest points from the stem, in stem widths [-]
   double lying = 0.01;  ///< least ratio of other points to ground if there is no stem [-]
-  double bin = 0.01;   ///< height of a bin / vertical extent; the height is at least 4 spacings [-]
-  int bins = 12;       ///< lowest bins for the search of the stem [count]
-  double keep = 2;     ///< radius around the stem without search of plants, in stem widths [-]
-  double beside = 1.5; ///< radius within which ground is thinner, in stem widths [-] ...
-  double foot = 2;     ///< ... and its thickness there, in multiples of the noise [-]
+  double keep = 2;      ///< radius around the stem without search of plants, in stem widths [-]
+  double beside = 1.5;  ///< radius within which ground is thinner, in stem widths [-] ...
+  double foot = 2;      ///< ... and its thickness there, in multiples of the noise [-]
   double thickest = std::numeric_limits<double>::infinity(); ///< ground, in units of the input [L]
   double filled = 0.4; ///< least fraction of filled cells in a bin of plants [-]
   Terrain_options terrain;
   Sheet_options sheet;
+  Object_options objects;
+  Stem_bin_options stem;
 };
 
 namespace internal {
@@ -62,104 +65,6 @@ struct Bin_extent
   double width = 0;
   std::size_t count = 0;
 };
-
-/// Low points of a scan in bins of equal height, from below.
-struct Low_bins
-{
-  double low = 0, high = 0, height = 0;    ///< nearly all points lie between `low` and `high`
-  std::vector<Index> bin;                  ///< of each point; `none`: too high, or not used
-  std::vector<std::vector<Index>> members; ///< points by bin
-
-  Low_bins(const Scan& scan,
-           const std::vector<double>& height_of,
-           const Ground_options& rules,
-           const std::vector<std::uint8_t>& is_used)
-    : bin(scan.size(), none), members(static_cast<std::size_t>(rules.bins))
-  {
-    const Index n = static_cast<Index>(scan.size());
-    std::vector<float> heights;
-    for (Index i = 0; i < n; ++i)
-      if (is_used[i])
-        heights.push_back(static_cast<float>(height_of[i]));
-    if (heights.empty())
-      return;
-    const std::size_t tail = heights.size() / 1000;
-    low = double(pcs::internal::value_of_rank(heights, tail));
-    high = double(pcs::internal::value_of_rank(heights, heights.size() - 1 - tail));
-    height = std::max(rules.bin * (high - low), 4 * scan.spacing);
-    for (Index i = 0; i < n; ++i) {
-      const double b = (height_of[i] - low) / height;
-      if (is_used[i] && b < double(rules.bins)) {
-        bin[i] = static_cast<Index>(std::max(0.0, b));
-        members[bin[i]].push_back(i);
-      }
-    }
-  }
-};
-
-/// Returns the points of the stem in each bin. The stem is tracked downwards from the dominant
-/// component above the bins, by size times height, through connected components.
-inline std::vector<std::vector<Index>> stem_in_bins(const Scan& scan,
-                                                    const Compact_links& links,
-                                                    const std::vector<double>& height_of,
-                                                    const std::vector<std::uint8_t>& is_used,
-                                                    const Low_bins& bins)
-{
-  const Index n = static_cast<Index>(scan.size());
-  const std::size_t count = bins.members.size();
-  Point_sets above(n), sets(n); // connected components above all bins, and in each of them
-  Links across;
-  for_each_link(links, [&](const Link& l) {
-    if (!is_used[l.first] || !is_used[l.second])
-      return;
-    const Index a = bins.bin[l.first], b = bins.bin[l.second];
-    if (a == b)
-      (a == none ? above : sets).unite(l.first, l.second);
-    else
-      across.push_back(l);
-  });
-  std::vector<Index> size(n, 0);
-  std::vector<double> top(n, bins.low);
-  for (Index i = 0; i < n; ++i)
-    if (is_used[i]) {
-      ++size[bins.bin[i] == none ? above.find(i) : sets.find(i)];
-      if (bins.bin[i] == none)
-        top[above.find(i)] = std::max(top[above.find(i)], height_of[i]);
-    }
-  Index tallest = none;
-  const auto score = [&](Index i) { return double(size[i]) * (top[i] - bins.low); };
-  for (Index i = 0; i < n; ++i)
-    if (is_used[i] && bins.bin[i] == none &&
-        (tallest == none || score(above.find(i)) > score(tallest)))
-      tallest = above.find(i);
-  std::vector<std::vector<Index>> stem(count);
-  std::vector<std::uint8_t> is_stem(n, 0);
-  for (Index i = 0; i < n && tallest != none; ++i)
-    is_stem[i] = is_used[i] && bins.bin[i] == none && above.find(i) == tallest;
-  for (std::size_t b = count; b-- > 0;) {
-    Index part = none;
-    const auto offer = [&](Index i) {
-      const Index s = sets.find(i);
-      if (part == none || size[s] > size[part] || (size[s] == size[part] && s < part))
-        part = s;
-    };
-    for (const Link& l : across) {
-      if (bins.bin[l.first] == b && is_stem[l.second] && bins.bin[l.second] > b)
-        offer(l.first);
-      if (bins.bin[l.second] == b && is_stem[l.first] && bins.bin[l.first] > b)
-        offer(l.second);
-    }
-    if (part == none) // a gap: the largest component
-      for (const Index i : bins.members[b])
-        offer(i);
-    for (const Index i : bins.members[b])
-      if (sets.find(i) == part) {
-        stem[b].push_back(i);
-        is_stem[i] = 1;
-      }
-  }
-  return stem;
-}
 
 inline Bin_extent extent_of(const Scan& scan, const std::vector<Index>& points, const Vec3& up)
 {
@@ -211,8 +116,9 @@ public:
                 const Compact_links& links,
                 const Vec3& up,
                 const Ground_options& rules,
+                const std::optional<Vec3>& root,
                 const std::vector<std::uint8_t>& is_used)
-    : m_scan(scan), m_links(links), m_up(up), m_rules(rules), m_is_used(is_used)
+    : m_scan(scan), m_links(links), m_up(up), m_rules(rules), m_root(root), m_is_used(is_used)
   {
     auto terrain = find_terrain(scan, up, rules.terrain, is_used);
     if (!terrain)
@@ -222,8 +128,14 @@ public:
   }
 
   const std::vector<Index>& points() const { return m_points; }
-  /// Returns the foot of the stem on the ground; no value if there is no ground or no stem.
-  const std::optional<Stem_foot>& foot() const { return m_foot; }
+  /// Returns the points of separate objects that stand on the ground.
+  const std::vector<Index>& objects() const { return m_objects; }
+  Ground ground() &&
+  {
+    m_ground.number_of_points = m_points.size();
+    m_ground.number_of_object_points = m_objects.size();
+    return std::move(m_ground);
+  }
 
 private:
   double across(Index i, const Stem_foot& foot) const
@@ -313,9 +225,11 @@ private:
       return;
     if (!is_round(layer) && !is_area(layer, thickness))
       return;
-    const Low_bins bins(m_scan, height, m_rules, is_standing);
+    const Low_bins bins(m_scan, height, m_rules.stem, is_standing);
     const auto foot =
-        find_foot(m_scan, stem_in_bins(m_scan, m_links, height, is_standing, bins), m_up);
+        find_foot(m_scan,
+                  stem_in_bins(m_scan, m_links, height, is_standing, bins, m_rules.stem),
+                  m_up);
     if (!foot) { // such as a lying stem
       const auto standing = std::count(is_standing.begin(), is_standing.end(), 1);
       if (double(standing) >= m_rules.lying * double(layer.size()))
@@ -324,7 +238,7 @@ private:
     }
     if (!is_wide(*foot, layer))
       return;
-    m_foot = foot;
+    m_ground.foot = foot;
     m_points = far_from(*foot, layer);
     add_plants(bins, *foot);
     terrain.bridge(foot->center, kept(*foot));
@@ -337,6 +251,29 @@ private:
           (is_beside ? thickness : m_rules.foot * noise) + m_scan.local_spacing[i])
         m_points.push_back(i);
     }
+    if (m_rules.objects.do_remove)
+      find_objects_beside(*foot, height);
+    m_ground.terrain = std::move(terrain);
+    m_ground.thickness = thickness;
+    m_ground.up = m_up;
+  }
+
+  /// Finds objects among the points above the ground. `height`: of each point [L].
+  void find_objects_beside(const Stem_foot& foot, const std::vector<double>& height)
+  {
+    std::vector<std::uint8_t> is_left = m_is_used, is_stem(m_scan.size(), 0);
+    for (const Index i : m_points)
+      is_left[i] = 0;
+    for (Index i = 0; i < m_scan.size(); ++i)
+      is_stem[i] = is_left[i] && across(i, foot) <= kept(foot);
+    if (m_root) {
+      const auto is_wanted = [&](Index i) { return is_left[i] != 0; };
+      const auto nearest =
+          m_scan.search->nearest_if(*m_root, std::numeric_limits<double>::infinity(), is_wanted);
+      if (std::isfinite(nearest.squared_distance))
+        is_stem[nearest.index] = 1;
+    }
+    m_objects = find_objects(m_scan, m_links, height, is_left, is_stem, m_rules.objects);
   }
 
   /// Adds the points of the lowest bins, which plants fill, and of connected components that extend
@@ -365,37 +302,34 @@ private:
   const Compact_links& m_links;
   Vec3 m_up;
   const Ground_options& m_rules;
+  const std::optional<Vec3>& m_root;
   const std::vector<std::uint8_t>& m_is_used;
-  std::vector<Index> m_points;
-  std::optional<Stem_foot> m_foot;
+  std::vector<Index> m_points, m_objects;
+  Ground m_ground;
 };
 
 } // namespace internal
 
-/// The ground of a scan.
-struct Ground
-{
-  std::size_t number_of_points = 0;
-  std::optional<Stem_foot> foot; ///< of the tree that stands on it
-};
-
 /*!
   Removes ground from `is_used`. Ground is a terrain below all other points. It covers an area of
-  any outline and is much wider than the stem, or an object lies on it. Plants that cover it are
-  removed, too. `links`: links between neighbours. O(n log n).
+  any outline and is much wider than the stem, or an object lies on it. Plants that cover it, and
+  separate objects that stand on it, are removed, too; not the component of the point nearest to a
+  given root. `links`: links between neighbours. O(n log n).
 */
 inline Ground mark_ground(const Scan& scan,
                           const Compact_links& links,
                           const Vec3& up,
                           const Ground_options& rules,
+                          const std::optional<Vec3>& root,
                           std::vector<std::uint8_t>& is_used)
 {
   if (std::count(is_used.begin(), is_used.end(), 1) < 200)
     return Ground();
-  const internal::Ground_finder ground(scan, links, up, rules, is_used);
-  for (const Index i : ground.points())
-    is_used[i] = 0;
-  return {ground.points().size(), ground.foot()};
+  internal::Ground_finder finder(scan, links, up, rules, root, is_used);
+  for (const auto* points : {&finder.points(), &finder.objects()})
+    for (const Index i : *points)
+      is_used[i] = 0;
+  return std::move(finder).ground();
 }
 
 } // namespace skeleton

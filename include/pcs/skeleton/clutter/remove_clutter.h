@@ -69,14 +69,19 @@ public:
   }
 
   /// Marks the ground among the points with `links`, and calls `meanwhile()` on another thread.
+  /// `root`: of the tree, if it is given.
   template <class Meanwhile>
-  void mark_ground(const Compact_links& links, const Vec3& up, const Meanwhile& meanwhile)
+  void mark_ground(const Compact_links& links,
+                   const Vec3& up,
+                   const std::optional<Vec3>& root,
+                   const Meanwhile& meanwhile)
   {
     m_is_above_ground = m_labels.flags();
     m_ground = Ground();
     pcs::internal::invoke_both<ConcurrencyTag>(
         [&] {
-          m_ground = skeleton::mark_ground(m_scan, links, up, m_options.ground, m_is_above_ground);
+          m_ground =
+              skeleton::mark_ground(m_scan, links, up, m_options.ground, root, m_is_above_ground);
         },
         meanwhile);
   }
@@ -87,6 +92,7 @@ public:
   bool remove_ground_and_faces(const FindLinks& find_links, Compact_links& links)
   {
     m_report.number_of_ground_points = m_ground.number_of_points;
+    m_report.number_of_object_points = m_ground.number_of_object_points;
     const bool has_ground = m_ground.number_of_points > 0;
     if (has_ground) {
       m_labels.keep_only(std::move(m_is_above_ground));
@@ -96,6 +102,8 @@ public:
     return (may_have_faces && m_walls.leave_out_rest(find_links, links)) || has_ground;
   }
 
+  /// Returns the removed ground.
+  const Ground& ground() const { return m_ground; }
   /// Returns the foot of the tree on the removed ground; no value without ground.
   const std::optional<Stem_foot>& foot() const { return m_ground.foot; }
 

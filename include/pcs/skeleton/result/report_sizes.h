@@ -7,10 +7,14 @@
 
 #include <pcs/core/Skeleton_report.h>
 #include <pcs/internal/constants.h>
+#include <pcs/linear_algebra/small_symmetric.h>
 #include <pcs/skeleton/model/Axis_set.h>
 #include <pcs/skeleton/model/Branch_tree.h>
 
+#include <Eigen/Core>
+
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -125,6 +129,59 @@ inline void report_stems(const Branch_tree& tree,
   r.diameter_at_breast_height = r.stem_diameters.empty() ? 0 : r.stem_diameters.front();
 }
 
+/*!
+  The main direction of the wood: with lengths l, volumes v, unit vectors d and centers c of all
+  pieces, the eigenvector e of the largest eigenvalue of
+
+      M = sum v d d^T / sum v,    oriented by    e . (sum l c / sum l - sum v c / sum v) > 0,
+
+  since thin wood contributes more length than volume. The largest eigenvalue of wood in all
+  directions is 1/3. If the two means are close to each other, e points upwards.
+*/
+class Wood_direction
+{
+public:
+  void add(const Vec3& from, const Vec3& to, double volume)
+  {
+    const Vec3 d = to - from, center = 0.5 * (from + to);
+    const double length = d.norm();
+    if (!(length > 0))
+      return;
+    m_length += length;
+    m_volume += volume;
+    m_by_length += length * center;
+    m_by_volume += volume * center;
+    m_directions += volume / (length * length) * d * d.transpose();
+    m_square += length * center * center.transpose();
+  }
+
+  /// Returns the angle between `up` and the main direction; 0 if no direction prevails [rad].
+  double angle(const Vec3& up) const
+  {
+    constexpr double least = 0.6; // eigenvalue of wood with a main direction [-]
+    constexpr double apart = 0.3; // distance of the centers of wood with a thick and a thin end,
+                                  // relative to the standard deviation of its length [-]
+    if (!(m_volume > 0))
+      return 0;
+    const auto eigen = linear_algebra::symmetric_eigen<3>(m_directions / m_volume);
+    if (!(eigen.values(2) >= least))
+      return 0;
+    Vec3 e = eigen.vectors.col(2);
+    const double middle = e.dot(m_by_length) / m_length;
+    const double offset = middle - e.dot(m_by_volume) / m_volume;
+    const double deviation = std::sqrt(
+        std::max(0.0, (e.transpose() * m_square * e).value() / m_length - middle * middle));
+    if (std::abs(offset) >= apart * deviation ? offset < 0 : e.dot(up) < 0)
+      e = -e;
+    return std::acos(std::clamp(e.dot(up), -1.0, 1.0));
+  }
+
+private:
+  double m_length = 0, m_volume = 0;
+  Vec3 m_by_length = Vec3::Zero(), m_by_volume = Vec3::Zero();
+  Eigen::Matrix3d m_directions = Eigen::Matrix3d::Zero(), m_square = Eigen::Matrix3d::Zero();
+};
+
 } // namespace internal
 
 /// Fills in the entries that depend only on the tree, in the unit of the input. `unit` is the unit
@@ -150,6 +207,7 @@ inline void report_sizes(const Branch_tree& tree,
     return;
   const double ground = up.dot(tree.nodes[0].point);
   std::vector<internal::Stem_crossing> crossings;
+  internal::Wood_direction direction; // relative to the root
   for (Index v = 0; v < tree.nodes.size(); ++v) {
     const Branch_node& node = tree.nodes[v];
     r.height = std::max(r.height, unit * (up.dot(node.point) - ground));
@@ -165,6 +223,7 @@ inline void report_sizes(const Branch_tree& tree,
     while (size < r.size_bounds.size() && 0.5 * (a + b) > r.size_bounds[size])
       ++size;
     const std::size_t order = static_cast<std::size_t>(tree.branches[node.branch].order);
+    direction.add(below.point - tree.nodes[0].point, node.point - tree.nodes[0].point, volume);
     for (Branch_totals* w : {&r.total, &r.by_order[order], &r.by_size[size]}) {
       w->length += length;
       w->volume += volume;
@@ -178,6 +237,7 @@ inline void report_sizes(const Branch_tree& tree,
         diameter_of_section(tree, v, h0 / (h0 - h1), half_section_by_breast_height * breast_height);
     crossings.push_back({diameter, node.branch});
   }
+  r.inclination = direction.angle(up);
   internal::report_stems(tree, up, ground, std::move(crossings), r);
 }
 

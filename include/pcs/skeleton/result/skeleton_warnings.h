@@ -31,11 +31,33 @@ inline std::string short_text(double value)
   return out.str();
 }
 
+/// Returns whether coordinates are rounded to steps that merge or displace neighbouring points.
+inline bool is_rounded(const Skeleton_report& r)
+{
+  constexpr double max_step = 0.5; // of the spacing [-]
+  return r.coordinate_step > max_step * r.spacing;
+}
+
+/// Adds warnings about the precision of the coordinates.
+inline void warn_of_precision(const Skeleton_report& r, std::vector<std::string>& sentences)
+{
+  if (r.voxel_size > 0)
+    sentences.push_back("the points are voxel centers of size " + short_text(r.voxel_size) +
+                        "; branches that are not several times as thick are rough guesses");
+  else if (is_rounded(r))
+    sentences.push_back(
+        "the coordinates are rounded to steps of " + short_text(r.coordinate_step) +
+        (r.is_single_precision
+             ? ", as 32-bit floating-point numbers far from the origin are; export the scan in "
+               "double precision, or subtract an offset before it is stored"
+             : "; branches that are not several times as thick are rough guesses"));
+}
+
 /// Adds warnings about the points of the scan.
 inline void warn_of_points(const Skeleton_report& r, std::vector<std::string>& sentences)
 {
   constexpr double max_unreached = 0.05; // fraction of the points [-]
-  constexpr double max_leaves = 0.5;     // fraction of the points without ground and walls [-]
+  constexpr double max_leaves = 0.5; // fraction of the points without ground, objects and walls [-]
   if (r.number_of_other_stems > 0)
     sentences.push_back("more than one tree: " + std::to_string(r.number_of_other_stems) +
                         " other stem(s) at the height of the foot; only one tree is kept "
@@ -49,12 +71,17 @@ inline void warn_of_points(const Skeleton_report& r, std::vector<std::string>& s
     sentences.push_back("a part of a thick branch may be missing: " +
                         std::to_string(r.number_of_unexplained_thick_points) +
                         " points around its base belong to no branch");
+  if (r.number_of_standing_branches > 0)
+    sentences.push_back(std::to_string(r.number_of_standing_branches) +
+                        " branches near the tree stand on the ground beside it: they were removed "
+                        "as objects or other plants, and branches that touch them may be cut");
   if (r.number_of_wall_points > 0)
     sentences.push_back(std::to_string(r.number_of_wall_points) +
                         " points on or beside walls or other flat faces were removed; similar "
                         "objects may remain among the branches");
-  const double tree =
-      double(points) - double(r.number_of_ground_points) - double(r.number_of_wall_points);
+  const double tree = double(points) -
+                      double(r.number_of_ground_points + r.number_of_object_points) -
+                      double(r.number_of_wall_points);
   if (double(r.number_of_leaf_points) > max_leaves * tree)
     sentences.push_back("most of the points are classified as leaves, which hide wood: radii and "
                         "volume may differ much between scans of the same tree");
@@ -67,25 +94,9 @@ inline void warn_of_points(const Skeleton_report& r, std::vector<std::string>& s
                              ? "check the unit of breast_height, or use "
                                "do_register_stations(false)"
                              : "check that the labels denote scanner stations, not flight lines"));
-  if (r.is_in_rows)
+  if (r.is_in_rows && !is_rounded(r)) // rounding also gives rows
     sentences.push_back("the points lie in sparse rows, in which leaves cannot be separated from "
                         "wood; all points are kept (do_remove_leaves(true) removes leaves)");
-}
-
-/// Adds warnings about the precision of the coordinates.
-inline void warn_of_precision(const Skeleton_report& r, std::vector<std::string>& sentences)
-{
-  constexpr double max_step = 0.5; // of the spacing: larger steps merge or displace neighbours [-]
-  if (r.voxel_size > 0)
-    sentences.push_back("the points are voxel centers of size " + short_text(r.voxel_size) +
-                        "; branches that are not several times as thick are rough guesses");
-  else if (r.coordinate_step > max_step * r.spacing)
-    sentences.push_back(
-        "the coordinates are rounded to steps of " + short_text(r.coordinate_step) +
-        (r.is_single_precision
-             ? ", as 32-bit floating-point numbers far from the origin are; export the scan in "
-               "double precision, or subtract an offset before it is stored"
-             : "; branches that are not several times as thick are rough guesses"));
 }
 
 /// Returns the diameter of a cylinder with the length and volume of the trunk.
@@ -114,6 +125,7 @@ inline void warn_of_shape(const Skeleton_report& r, std::vector<std::string>& se
   // spacing / trunk diameter: above this ratio, volumes may be several times too large; real scans
   // have at most 0.2 [-]
   constexpr double max_spacing = 1.0 / 3;
+  constexpr double min_lying = pcs::internal::pi / 3, max_lying = 2 * min_lying; // [rad]
   if (r.blade_fraction > 0)
     sentences.push_back(
         short_text(std::round(100 * r.blade_fraction)) +
@@ -130,12 +142,21 @@ inline void warn_of_shape(const Skeleton_report& r, std::vector<std::string>& se
                              : "this may be no tree (skeleton_method(level_sets) is for plants "
                                "with leaf blades)"));
   if (diameter < min_trunk_ratio * r.height)
-    sentences.push_back("the trunk is too thin for the height; the scan may show too little of it, "
-                        "or wood was classified as leaves (do_remove_leaves(false) keeps it)");
+    sentences.push_back(
+        std::string("the trunk is too thin for the height; the scan may show too little of it") +
+        (r.number_of_leaf_points > 0
+             ? ", or wood was classified as leaves (do_remove_leaves(false) keeps it)"
+             : ""));
   if (diameter > max_trunk_ratio * r.by_order.front().length)
     sentences.push_back("the trunk is shorter than five of its diameters; this may be no tree");
   else if (r.total.volume > max_wood * std::pow(r.max_root_distance, 3))
     sentences.push_back("there is more wood than a tree of this size has; this may be no tree");
+  if (r.inclination > min_lying && !is_rounded(r)) // rounded wood has arbitrary directions
+    sentences.push_back(
+        std::string("the tree ") + (r.inclination < max_lying ? "lies" : "is upside down") +
+        ": its wood points " + short_text(std::round(r.inclination * 180 / pcs::internal::pi)) +
+        " degrees away from the up direction; check the vertical axis of the file "
+        "(up_direction selects another)");
   if (r.spacing > max_spacing * diameter)
     sentences.push_back("the points are farther apart than a third of the diameter of the trunk; "
                         "radii and volume are rough guesses");
@@ -221,8 +242,8 @@ inline void warn_of_spread(const Skeleton_report& r, std::vector<std::string>& s
 inline std::vector<std::string> warnings(const Skeleton_report& r)
 {
   std::vector<std::string> sentences;
+  internal::warn_of_precision(r, sentences); // a cause of others
   internal::warn_of_points(r, sentences);
-  internal::warn_of_precision(r, sentences);
   internal::warn_of_unit("the tree",
                          std::max(r.height, r.max_root_distance), // it may lie
                          r.breast_height,

@@ -83,6 +83,19 @@ public:
     m_report.spacing = m_scan.frame.unit * m_scan.spacing;
   }
 
+  /// Removes the used points for which `is_object(i)` holds. The spacing is not measured again.
+  template <class IsObject>
+  void remove_objects(const IsObject& is_object)
+  {
+    Flags is_left = m_is_used;
+    for (Index i = 0; i < m_scan.size(); ++i)
+      if (m_is_used[i] && is_object(i)) {
+        is_left[i] = 0;
+        ++m_report.number_of_object_points;
+      }
+    use_only(is_left);
+  }
+
   /// Keeps only the points of `is_wood`; all other used points become leaves.
   void remove_leaves(const Flags& is_wood)
   {

@@ -15,6 +15,9 @@
 #include <pcs/skeleton/stages/stage_progress.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
 
 namespace pcs {
 namespace skeleton {
@@ -47,6 +50,19 @@ void continue_trunk(Session_state<Tag>& s)
   s.report.hidden_trunk_volume = unit * unit * unit * part.volume;
 }
 
+/// Removes the axes that stand on the ground beside the tree, and all that are joined to them.
+template <class Tag>
+void remove_objects(Session_state<Tag>& s)
+{
+  const std::vector<std::uint8_t> is_object = axes_of_objects(s.joined);
+  const auto count = static_cast<std::size_t>(std::count(is_object.begin(), is_object.end(), 1));
+  s.joined.tree.number_of_unreached_axes -= count;
+  s.report.number_of_standing_branches = count;
+  if (count > 0)
+    s.labels.remove_objects(
+        [&](Index i) { return s.axes.is_covered(i) && is_object[s.axes.axis_of_point[i]] != 0; });
+}
+
 template <class Tag>
 bool build_tree(Session_state<Tag>& s, pcs::internal::Progress& progress)
 {
@@ -56,8 +72,16 @@ bool build_tree(Session_state<Tag>& s, pcs::internal::Progress& progress)
   const auto joining = [&](double f) {
     return progress(end_of_axes + (end_of_joints - end_of_axes) * f);
   };
-  if (!build_branch_tree<Tag>(s.scan, s.root, root_hint(s), o.branching, joining, s.axes, s.joined))
+  if (!build_branch_tree<Tag>(s.scan,
+                              s.root,
+                              root_hint(s),
+                              o.given ? Ground() : s.clutter.ground(), // it has all branches
+                              o.branching,
+                              joining,
+                              s.axes,
+                              s.joined))
     return false;
+  remove_objects(s);
   if (s.leaves.has_leaves && s.leaves.rounds > 0) // remaining leaves make twigs thick
     s.options.radii.support.pipes.slack = o.leaves.pipe_slack;
   refine_radii<Tag>(s.scan, s.is_used(), s.axes, o.radii, s.joined.tree);

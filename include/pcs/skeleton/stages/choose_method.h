@@ -9,11 +9,14 @@
 #include <pcs/internal/progress.h>
 #include <pcs/skeleton/Session_options.h>
 #include <pcs/skeleton/Session_state.h>
+#include <pcs/skeleton/model/Moments.h>
 #include <pcs/skeleton/stages/neighbor_stage.h>
 #include <pcs/skeleton/stages/path_stage.h>
 #include <pcs/skeleton/stages/stage_progress.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <map>
 #include <vector>
 
 namespace pcs {
@@ -33,19 +36,36 @@ void find_blades(Session_state<Tag>& s)
     set_method(s, Skeleton_method::chains);
 }
 
-/// Keeps the blades of the largest connected part, which is the plant. Other parts may be objects
-/// beside it.
+/// Keeps the blades of the largest connected part, which is the plant, unless they stand on the
+/// ground like walls. Other parts may be objects beside it.
 template <class Tag>
-void keep_connected_blades(Session_state<Tag>& s)
+void keep_blades_of_plant(Session_state<Tag>& s)
 {
-  const Point_parts parts = connected_parts<Tag>(s.is_used(), used_links(s));
+  const Compact_links links = used_links(s);
+  const Point_parts parts = connected_parts<Tag>(s.is_used(), links);
   const auto largest = std::max_element(parts.size.begin(), parts.size.end());
   const auto plant = static_cast<Index>(largest - parts.size.begin());
   std::vector<Index>& points = s.blades.points;
+  std::vector<std::uint8_t> is_blade(s.scan.size(), 0);
+  for (const Index i : points)
+    is_blade[i] = 1;
+  const Point_parts blades = connected_parts<Tag>(is_blade, links);
+  std::map<Index, Moments> feet; // the points near the ground, by blade
+  const Ground& ground = s.clutter.ground();
+  if (ground.terrain)
+    for (const Index i : points)
+      if (ground.terrain->height(s.scan.points[i]) <= s.blades.radius)
+        feet[blades.part[i]].add(s.scan.points[i]);
+  const auto is_standing = [&](Index i) {
+    const auto foot = feet.find(blades.part[i]);
+    return foot != feet.end() &&
+           foot->second.covariance().trace() >= s.blades.radius * s.blades.radius;
+  };
   const double count = double(points.size());
-  points.erase(
-      std::remove_if(points.begin(), points.end(), [&](Index i) { return parts.part[i] != plant; }),
-      points.end());
+  points.erase(std::remove_if(points.begin(),
+                              points.end(),
+                              [&](Index i) { return parts.part[i] != plant || is_standing(i); }),
+               points.end());
   s.blades.share *= double(points.size()) / count;
 }
 
@@ -61,7 +81,7 @@ bool choose_method(Session_state<Tag>& s, pcs::internal::Progress& progress)
   });
   if (!is_running)
     return false;
-  keep_connected_blades(s);
+  keep_blades_of_plant(s);
   const Blade_options& rules = s.options.blades;
   const double bark = share_of_bark(s.scan, axes, s.blades, rules);
   const double share = (1 - bark) * s.blades.share;

@@ -77,7 +77,7 @@ bool remove_ground(Session_state<Tag>& s,
       link_used(s, links, known, linked);
   };
   if (s.options.do_mark_ground) // links meanwhile, since most scans have no ground
-    s.clutter.mark_ground(links, s.options.up, [&] { link(Known_root::none); });
+    s.clutter.mark_ground(links, s.options.up, root_hint(s), [&] { link(Known_root::none); });
   else
     link(Known_root::none);
   if (!progress(end_of_clutter))

@@ -1,0 +1,31 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The ground below a tree, as it was found and removed.
+
+#ifndef PCS_SKELETON_CLUTTER_GROUND_H
+#define PCS_SKELETON_CLUTTER_GROUND_H
+
+#include <pcs/skeleton/clutter/Terrain.h>
+#include <pcs/skeleton/layers/Stem_foot.h>
+#include <pcs/skeleton/model/Scan.h>
+
+#include <cstddef>
+#include <optional>
+
+namespace pcs {
+namespace skeleton {
+
+/// The ground of a scan.
+struct Ground
+{
+  std::size_t number_of_points = 0, number_of_object_points = 0;
+  std::optional<Stem_foot> foot;  ///< of the tree that stands on it
+  std::optional<Terrain> terrain; ///< its surface, if there is a foot
+  double thickness = 0;           ///< of the ground above this surface [L]
+  Vec3 up = Vec3::UnitZ();
+};
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_CLUTTER_GROUND_H
