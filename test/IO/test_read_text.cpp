@@ -173,6 +173,16 @@ BOOST_AUTO_TEST_CASE(columns_of_text_are_left_out_with_a_warning)
           "column: awk -F',' -v OFS=',' '{$4=\"\"}1' FILE > NEW_FILE");
 }
 
+BOOST_AUTO_TEST_CASE(truth_values_are_one_and_zero)
+{
+  const Point_table table = read("a.csv", "x,y,z,wood\n1,2,3,TRUE\n4,5,6,\"False\"\n7,8,9,1\n");
+  BOOST_TEST((table.property<double>("wood") == std::vector<double>{1, 0, 1}));
+  BOOST_TEST(table.schema().warnings.empty());
+  const Point_table unnamed = read("a.xyz", "1 2 3 true\n4 5 6 false\n");
+  BOOST_TEST((unnamed.property<double>("column_4") == std::vector<double>{1, 0}));
+  refuses("a.csv", "x,y,z\n1,2,3\n4,TRUE,6\n", "found 'TRUE'");
+}
+
 BOOST_AUTO_TEST_CASE(lines_of_text_may_precede_the_first_row)
 {
   for (const char* text : {"% tree\n% x y z\n1 2 3\n",

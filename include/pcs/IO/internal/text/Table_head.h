@@ -260,7 +260,8 @@ private:
   void inspect(std::string_view word, Column& column)
   {
     double value = 0;
-    if (parse_number(word, value) != Parse_result::not_a_number)
+    if (parse_number(word, value) != Parse_result::not_a_number ||
+        (!is_coordinate_name(column.name) && parse_truth_value(word, value)))
       return;
     if (is_table_number(word, is_comma_decimal()) || word.empty()) {
       has_decimal_commas = has_decimal_commas || has_decimal_comma(word);

@@ -24,11 +24,11 @@ namespace internal {
 /*
   The head determines the separator and the columns. The coordinates are the columns with the names
   x, y and z or with names such as Easting, Northing and Height, in any order. Columns such as Nx,
-  Ny and Nz are named nx, ny and nz, if there are all three. Without names, the
-  first three columns are x, y and z, and the others are named column_4, column_5, ..., because six
-  columns may contain normals or colours. Other columns with text are left out with a warning; their
-  missing values are NaN. A first column without a name that counts the rows is refused, because it
-  would be read as x.
+  Ny and Nz are named nx, ny and nz, if there are all three. Without names, the first three columns
+  are x, y and z, and the others are named column_4, column_5, ..., because six columns may contain
+  normals or colours. "TRUE" and "FALSE" are 1 and 0, except in coordinates. Other columns with text
+  are left out with a warning; their missing values are NaN. A first column without a name that
+  counts the rows is refused, because it would be read as x.
 */
 class Text_reader : public Format_reader
 {
@@ -141,6 +141,8 @@ private:
   double parse_unusual_number(std::size_t i) const
   {
     double value = 0;
+    if (!is_coordinate_name(m_head.columns[i].name) && parse_truth_value(m_words[i], value))
+      return value;
     const Parse_result result = parse_table_number(m_words[i], m_head.is_comma_decimal(), value);
     if (result != Parse_result::ok)
       fail_word(i, result);

@@ -92,6 +92,19 @@ inline bool is_table_number(std::string_view word, bool is_comma_decimal)
          parse_table_number(word, is_comma_decimal, value) != Parse_result::not_a_number;
 }
 
+//! converts "true" and "false", as R and Python write labels, to 1 and 0; `false` for other words
+inline bool parse_truth_value(std::string_view word, double& value)
+{
+  word = without_quotes(word);
+  for (const char* name : {"TRUE", "True", "true"})
+    if (word == name)
+      return value = 1, true;
+  for (const char* name : {"FALSE", "False", "false"})
+    if (word == name)
+      return value = 0, true;
+  return false;
+}
+
 //! removes and returns the first word of a line; blanks and tabs separate words unless quoted
 inline std::string_view next_table_word(std::string_view& line)
 {
