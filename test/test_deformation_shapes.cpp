@@ -296,6 +296,75 @@ BOOST_AUTO_TEST_CASE(springs_through_the_interior_follow_the_material)
     }
 }
 
+namespace {
+
+/// A closed cylinder of radius 1 along z, from 0 to `height`, on a spiral; caps included.
+Points closed_cylinder(int number_of_points, double height)
+{
+  const double golden = 2.399963229728653;
+  Points points;
+  const int on_caps = static_cast<int>(number_of_points / (1 + height));
+  for (int i = 0; i < number_of_points - on_caps; ++i) {
+    const double share = (i + 0.5) / (number_of_points - on_caps);
+    points.emplace_back(std::cos(golden * i), std::sin(golden * i), height * share);
+  }
+  for (int i = 0; i < on_caps; ++i) {
+    const double r = std::sqrt((i / 2 + 0.5) / (on_caps / 2));
+    points.emplace_back(r * std::cos(golden * i), r * std::sin(golden * i), i % 2 * height);
+  }
+  return points;
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_CASE(a_closed_body_follows_its_material_with_any_number_of_samples)
+{
+  // Stretched by 1.5: the radius becomes 1.5^-nu. Few samples are far apart, and their links are
+  // oblique.
+  const double height = 10;
+  const Points points = closed_cylinder(4000, height);
+  const auto handles = pcs_test::two_handles(
+      points,
+      [](const Vec3& p) { return p.z() < 1; },
+      [=](const Vec3& p) { return p.z() > height - 1; },
+      pcs::translation(Vec3(0, 0, 0.5 * (height - 2))));
+  for (const double poisson_ratio : {0.5, 0.25, -0.25, -0.5, -0.9})
+    for (const long long samples : {200, 250, 300, 500, 700, 1000, 1000000}) {
+      Options options;
+      options.number_of_samples = samples;
+      options.poisson_ratio = poisson_ratio;
+      const auto result = deform(points, handles, options);
+      double sum = 0;
+      int count = 0;
+      for (std::size_t i = 0; i < points.size(); ++i)
+        if (std::abs(points[i].z() - height / 2) < height / 10) {
+          sum += result.points[i].head<2>().norm();
+          ++count;
+        }
+      const double radius = sum / count, expected = std::pow(1.5, -poisson_ratio);
+      BOOST_TEST_MESSAGE("nu " << poisson_ratio << ", " << samples << " samples, "
+                               << result.report.number_of_interior_links << " links: radius "
+                               << radius << ", expected " << expected);
+      BOOST_TEST_CONTEXT("nu " << poisson_ratio << ", " << samples << " samples")
+      {
+        BOOST_TEST(std::abs(radius / expected - 1) < 0.07);
+        BOOST_TEST(result.report.energy < 0.8 * result.report.initial_energy);
+      }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_small_poisson_ratio_changes_little)
+{
+  // The energy is continuous at zero, where no stretch of the material is computed.
+  const pcs_test::Bar_edit bar(12, 48);
+  Options options;
+  const auto without = deform(bar.points, bar.handles, options);
+  options.poisson_ratio = 1e-6;
+  const auto with = deform(bar.points, bar.handles, options);
+  BOOST_TEST(pcs_test::largest_distance(without.points, with.points) < 1e-4);
+  BOOST_TEST(std::abs(with.report.energy / without.report.energy - 1) < 1e-3);
+}
+
 BOOST_AUTO_TEST_CASE(a_stiffer_body_bends_less)
 {
   // A dragged plate: a larger stiffness reduces bending and increases stretch.

@@ -50,6 +50,9 @@ constexpr int first_accelerated_pass = 4;
 /// If an accelerated iteration reduces the energy by less than this fraction of the tolerance, a
 /// plain iteration decides whether the iterations end. [-]
 constexpr double poor_gain = 0.1;
+/// Largest number of halvings of a step that raises the energy, for materials with a Poisson's
+/// ratio. [count]
+constexpr int most_halvings = 3;
 /// A guess from a coarser network is accepted if its energy is below this fraction of the energy
 /// after one iteration. The fraction is 0.95 or more if the field of the handles explains the
 /// motion (bars and tubes of benchmark/quality). It is 0.03 to 0.8 for the plate, the bar bent

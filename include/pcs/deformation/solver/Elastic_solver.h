@@ -16,6 +16,7 @@
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -187,7 +188,8 @@ private:
           m_shape.has_link_offsets() || pass + 1 == options.maximal_number_of_passes;
       const bool is_accelerated =
           !is_checking && pass >= (result.is_far_from_field ? 1 : first_accelerated_pass);
-      bool has_improved = improve(is_accelerated, is_last, result);
+      result.status = Status::converged;
+      bool has_improved = improve(is_accelerated, is_last, options.tolerance, result);
       if (pass == 0 && !result.is_far_from_field)
         result.first_pass_energy = result.energy;
       if (pass == 0 && guess && !guess->deviations.empty()) {
@@ -195,10 +197,10 @@ private:
         has_improved = has_improved || result.is_far_from_field;
       }
       result.number_of_passes = pass + 1;
-      result.status = Status::converged;
       // Without the links, further iterations would let the body collapse.
       if (m_shape.has_link_offsets() || !has_improved)
         return;
+      result.status = Status::converged;
       const double gain = before - result.energy;
       is_checking = is_accelerated && gain <= poor_gain * options.tolerance * before;
       if (is_checking)
@@ -210,8 +212,9 @@ private:
   }
 
   /// Performs one iteration, accelerated if this lowers the energy, otherwise plain. Returns
-  /// `false` if neither lowers the energy, because only rounding errors remain at the optimum.
-  bool improve(bool is_accelerated, bool is_last, Elastic_result& result)
+  /// `false` if neither lowers the energy. Usually, only rounding errors remain then. A clear rise
+  /// of the energy, however, is no sign of convergence, and the status says so.
+  bool improve(bool is_accelerated, bool is_last, double tolerance, Elastic_result& result)
   {
     m_shape.keep();
     m_best_smooth.swap(m_smooth);
@@ -227,13 +230,32 @@ private:
       m_shape.restart_from_kept();
       energy = apply_deviations(!is_last);
     }
+    const double rise = energy - result.energy;
+    if (m_shape.is_stretched())
+      for (int i = 0; i < most_halvings && !(energy < result.energy); ++i)
+        energy = halve_step(!is_last);
     if (!(energy < result.energy)) {
       m_smooth.swap(m_best_smooth);
       m_shape.return_to(m_smooth);
+      if (!m_shape.has_link_offsets() &&
+          rise > std::max(tolerance, default_tolerance) * result.energy)
+        result.status = Status::iteration_limit;
       return false;
     }
     result.energy = energy;
     return true;
+  }
+
+  /// Halves the step from the stored state. A step is exact for a constant stretch of the material
+  /// only, and overshoots where the links compress what they follow. Returns the energy. [L^2]
+  double halve_step(bool has_next)
+  {
+    pcs::internal::for_each_index<ConcurrencyTag>(rows().size(), [&](std::size_t r) {
+      const std::size_t i = rows().node_of_row[r];
+      m_smooth[i] = 0.5 * (m_smooth[i] + m_best_smooth[i]);
+    });
+    m_shape.halve_step(m_smooth);
+    return m_shape.fit_and_measure(m_smooth, has_next);
   }
 
   /// Mixes the input and the output of an iteration: the deviations and, if there are links, the

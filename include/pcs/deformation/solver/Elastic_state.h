@@ -152,23 +152,51 @@ struct Elastic_state
     return energy;
   }
 
-  /// Returns the stretch of a material with the given Poisson's ratio `nu` under its current main
-  /// stretch `s1` along `v`: `S = s1 v v^T + s1^-nu (I - v v^T)`.
+  /*!
+    Returns the stretch at which a material with Poisson's ratio `nu` has no stress in a direction,
+    if the strain across is the present one (plane stress). With the principal logarithmic strains
+    `e1`, `e2` along `v1`, `v2` in the surface with the normal `n`:
+
+        S = exp(-nu e2) v1 v1^T + exp(-nu e1) v2 v2^T + exp(-nu e) n n^T,
+
+    where `e = (e1 + e2) / (1 - max(nu, 0))`, limited to the larger strain: the links through the
+    interior would otherwise overshoot, because their compression changes `e1` and `e2`. A strain
+    has no share in its own target, so that the body resists every extension.
+  */
   Eigen::Matrix3d transverse_stretch(std::size_t i, double poisson_ratio) const
   {
+    const Vec3 normal = surface_normal(i), u = normal.unitOrthogonal();
+    Eigen::Matrix<double, 3, 2> plane;
+    plane << u, normal.cross(u);
     const Eigen::Matrix3d in_rest = frame[i].inverse() * deformation_gradient(i);
-    const auto eigen = linear_algebra::symmetric_eigen<3>(0.5 * (in_rest + in_rest.transpose()));
+    const auto eigen = linear_algebra::symmetric_eigen<2>(
+        0.5 * (plane.transpose() * (in_rest + in_rest.transpose()) * plane));
     if (!(eigen.values.minCoeff() > 0) || !eigen.values.allFinite())
       return Eigen::Matrix3d::Identity();
-    int main = 0;
-    for (int k = 1; k < 3; ++k)
-      if (std::abs(std::log(eigen.values[k])) > std::abs(std::log(eigen.values[main])))
-        main = k;
-    // Factors beyond ten indicate a torn network.
-    const double s1 = std::min(10.0, std::max(0.1, eigen.values[main]));
-    const Vec3 v = eigen.vectors.col(main);
-    const double across = std::pow(s1, -poisson_ratio);
-    return (s1 - across) * v * v.transpose() + across * Eigen::Matrix3d::Identity();
+    const auto strain = [&](int k) { // factors beyond ten indicate a torn network
+      return std::log(std::min(10.0, std::max(0.1, eigen.values[k])));
+    };
+    const double e1 = strain(0), e2 = strain(1), largest = std::max(std::abs(e1), std::abs(e2));
+    const double e = (e1 + e2) / (1 - std::max(0.0, poisson_ratio));
+    const Vec3 v1 = plane * eigen.vectors.col(0), v2 = plane * eigen.vectors.col(1);
+    const auto across = [&](double cause) { return std::exp(-poisson_ratio * cause); };
+    return across(e2) * v1 * v1.transpose() + across(e1) * v2 * v2.transpose() +
+           across(std::min(largest, std::max(-largest, e))) * normal * normal.transpose();
+  }
+
+  /// Returns the direction in which the edges at node `i` have the least spread at rest.
+  Vec3 surface_normal(std::size_t i) const
+  {
+    const auto& graph = network.surface;
+    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+    for (std::size_t e = graph.first[i]; e < graph.first[i + 1]; ++e) {
+      const Vec3 edge = network.rest[graph.neighbor[e]] - network.rest[i];
+      spread += graph.weight[e] * edge * edge.transpose();
+    }
+    const double trace = spread.trace();
+    if (!(trace > std::numeric_limits<double>::min()))
+      return Vec3::UnitZ();
+    return linear_algebra::symmetric_eigen<3>(spread / trace).vectors.col(0);
   }
 
   /// Returns the least-squares linear map of the edges at node `i` from rest to the current state.

@@ -38,9 +38,9 @@ namespace deformation {
   Rotations are `R = exp(d) B`, with deviations `d` from the rotation field `B` of the handles.
   Positions are computed from rotations by `L x = b`, with
   `b_i = sum_j w_ij (G_i + G_j)/2 (x0_i - x0_j)`. Here `G_i = R_i A_i S_i` is the product of the
-  rotation, the growth between handles of different scale (`Blended_scales`), and the transverse
-  stretch of the material. From positions, the energy and the deviations of the best-fitting
-  rotations are computed.
+  rotation, the growth between handles of different scale (`Blended_scales`), and the stretch of
+  the material (`Elastic_state::transverse_stretch()`). From positions, the energy and the
+  deviations of the best-fitting rotations are computed.
 
   All matrices are constant for constant constraints; `constrain()` computes the three factors.
 */
@@ -53,6 +53,8 @@ public:
   /// Returns the rows of the unknowns.
   const Free_rows& rows() const { return m_factors.rows(); }
   bool has_links() const { return !m_network->links.neighbor.empty(); }
+  /// Whether the material has a Poisson's ratio other than zero.
+  bool is_stretched() const { return m_poisson_ratio != 0; }
   /// Returns a view of the current shape, which is valid until the next call.
   Elastic_state state() const
   {
@@ -174,8 +176,10 @@ public:
   }
 
   /// Returns the energy of the current state, without the constant energy inside handles with
-  /// targets. If an iteration follows, also prepares `smooth_deviations()`: it computes the
-  /// deviation of each node's best rotation from the field.
+  /// targets. The stretch of the material becomes that of the current positions, because energies
+  /// with the stretch of former positions cannot be compared. If an iteration follows, also
+  /// prepares `smooth_deviations()`: it computes the deviation of each node's best rotation from
+  /// the field.
   /// \param deviations those of the current rotations
   double fit_and_measure(const std::vector<Vec3>& deviations, bool has_next)
   {
@@ -189,7 +193,10 @@ public:
                                                     m_energies[begin / block] =
                                                         fit_block(deviations, begin, end, has_next);
                                                   });
-    const double sum = std::accumulate(m_energies.begin(), m_energies.end(), 0.0);
+    if (is_stretched())
+      stretch_targets();
+    const double sum =
+        is_stretched() ? measure(true) : std::accumulate(m_energies.begin(), m_energies.end(), 0.0);
     const double energy = sum - m_loads.held_energy();
     return energy < 0 ? 0 : energy; // negative by rounding only
   }
@@ -243,16 +250,18 @@ public:
   /// \name Stored States
   /// @{
 
-  /// Stores the positions, unless they are computed again.
+  /// Stores the positions, unless they are computed again, and the stretch that they cause.
   void keep()
   {
     if (!is_computed_again())
       m_kept_position = m_position;
+    m_kept_stretch = m_stretch;
   }
   /// Returns to the stored positions. \param deviations those of the stored positions
   void return_to(const std::vector<Vec3>& deviations)
   {
-    find_frames(deviations);
+    m_stretch = m_kept_stretch;
+    update_frames(deviations);
     if (is_computed_again())
       solve_positions(false);
     else
@@ -263,6 +272,18 @@ public:
   {
     if (!is_computed_again())
       m_position = m_kept_position;
+    m_stretch = m_kept_stretch;
+  }
+
+  /// Moves the positions half of the way back to the stored ones. Not for positions that are
+  /// computed again. \param deviations those of the new positions
+  void halve_step(const std::vector<Vec3>& deviations)
+  {
+    pcs::internal::for_each_index<ConcurrencyTag>(rows().size(), [&](std::size_t r) {
+      const std::size_t i = rows().node_of_row[r];
+      m_position[i] = 0.5 * (m_position[i] + m_kept_position[i]);
+    });
+    update_frames(deviations);
   }
 
   /// Stores the complete state from which an iteration continues.
@@ -284,8 +305,6 @@ public:
 
 private:
   static constexpr std::size_t block = 512;
-
-  bool is_stretched() const { return m_poisson_ratio != 0; }
 
   /// Whether the positions of an earlier state are computed again rather than stored. They follow
   /// from the deviations, unless there are links or a stretch.
@@ -334,12 +353,14 @@ private:
       Eigen::Matrix3d covariance;
       energy += measure_edges(edges, i, covariance);
       energy += state.link_energy(i);
-      if (!has_next || m_constraints.is_prescribed(i))
+      if (m_constraints.is_prescribed(i))
+        continue;
+      if (is_stretched())
+        m_stretch[i] = state.transverse_stretch(i, m_poisson_ratio);
+      if (!has_next)
         continue;
       if (!state.growth.empty())
         covariance *= state.growth[i];
-      if (is_stretched())
-        m_stretch[i] = state.transverse_stretch(i, m_poisson_ratio);
       node_of_fit[count] = i;
       fits.set(count++, covariance, rotation(deviations, i), m_field[i]);
       if (count == Rotation_fits::size)
@@ -394,6 +415,12 @@ private:
     update_frames({});
     if (is_solved)
       solve_positions(true);
+    return measure(false);
+  }
+
+  /// Returns the energy of the edges and, if `counts_links`, of the links.
+  double measure(bool counts_links)
+  {
     const Elastic_state state = this->state();
     const Edge_input edges = state.edges();
     const Measure_edges measure_edges = choose_measure_edges();
@@ -401,9 +428,11 @@ private:
         m_network->size(),
         0.0,
         [&](std::size_t i) {
+          if (m_constraints.handle_of_node[i] == unreached_node)
+            return 0.0;
           Eigen::Matrix3d covariance;
-          const bool is_reached = m_constraints.handle_of_node[i] != unreached_node;
-          return is_reached ? measure_edges(edges, i, covariance) : 0.0;
+          const double energy = measure_edges(edges, i, covariance);
+          return counts_links ? energy + state.link_energy(i) : energy;
         },
         [](double a, double b) { return a + b; },
         block,
@@ -414,10 +443,15 @@ private:
   void update_frames(const std::vector<Vec3>& deviations)
   {
     find_frames(deviations);
-    if (!is_stretched())
-      return;
+    if (is_stretched())
+      stretch_targets();
+  }
+
+  /// Computes the targets from the frames and the stretch of the material.
+  void stretch_targets()
+  {
     m_target.resize(m_network->size());
-    m_target_stretch = m_stretch; // which the next measurement changes while links are measured
+    m_target_stretch = m_stretch; // which a measurement changes while it reads the former one
     pcs::internal::for_each_index<ConcurrencyTag>(
         m_network->size(),
         [&](std::size_t i) { m_target[i] = m_frame[i] * m_stretch[i]; },
@@ -458,7 +492,7 @@ private:
   Target_loads m_loads;
   double m_poisson_ratio = 0;
   std::vector<Quaternion> m_field;
-  std::vector<Eigen::Matrix3d> m_frame, m_stretch, m_target, m_target_stretch;
+  std::vector<Eigen::Matrix3d> m_frame, m_stretch, m_target, m_target_stretch, m_kept_stretch;
   std::vector<Vec3> m_position, m_kept_position, m_ungrown, m_kept_directing;
   std::vector<double> m_energies; ///< by block of nodes
 };
