@@ -144,6 +144,7 @@ void run(const Options& options)
   if (!options.region.empty())
     region = read_region(options.region);
   const Edit* region_or_null = region ? &*region : nullptr;
+  const std::optional<Edit> motions = edit; // `edit` is moved
   std::optional<Report_file> report_file;
   if (!options.report.empty())
     report_file.emplace(options.report);
@@ -159,6 +160,8 @@ void run(const Options& options)
   warn_of_unreached_points(run);
   warn_of_invalid_splats(run);
   warn_of_unused_variants(run, options.model);
+  if (motions)
+    warn_of_lost_turns(run, options.model, *motions);
   for (const std::string& warning : run.warnings)
     std::cerr << "deform_point_set: warning: " << options.input << ": " << warning << '\n';
   run.seconds_total = total.seconds();

@@ -57,8 +57,9 @@ const char* help()
 {
   return R"(The source keeps its points, their order and properties. The faces of a mesh in PLY,
 OFF or OBJ are kept in these formats. Normals nx, ny, nz follow. Of Gaussian splats, only
-positions and normals follow. Lengths are fractions of the extent of the source, the diagonal of
-its bounding box; a warning says if a few stray points determine it.
+positions and normals follow. The lengths of options are fractions of the extent of the source, the
+diagonal of its bounding box; a warning says if a few stray points determine it. The summary and the
+report have lengths (residuals, displacement, landmark gap) in the unit of the coordinates.
 
 Landmarks are known pairs of a source point, counted from 0, and its position on the target. Three
 or more at different places determine the initial pose, unless --no-alignment is given. JSON:
@@ -68,8 +69,8 @@ or more at different places determine the initial pose, unless --no-alignment is
 Together with the target, they form a cloud without these holes.
 
 A warning says that the result is not plausible: fewer than a fifth of the points are matched, or
-their median distance from the target exceeds 0.02. Another one says that the extents of source
-and target differ by more than a factor of 3.
+their median distance from the target exceeds 0.02 extents. Another one says that the extents of
+source and target differ by more than a factor of 3.
 
 Exit codes: 0 success, 1 bad input or usage, 2 internal error.)";
 }
@@ -191,6 +192,7 @@ nlohmann::ordered_json to_json(const pcs::Fit_report& r, const Options& options)
   json["matched_points"] = r.number_of_matched;
   json["samples"] = r.number_of_samples;
   json["iterations"] = r.number_of_iterations;
+  json["unit_of_lengths"] = "coordinates of the source";
   json["median_residual"] = r.median_residual;
   json["rms_residual"] = r.rms_residual;
   json["rms_displacement"] = r.rms_displacement;
@@ -210,7 +212,8 @@ void print_summary(const pcs::Fit_report& r)
             << "matched     " << r.number_of_matched << '\n'
             << "residual    ";
   if (r.number_of_matched > 0)
-    std::cout << "median " << r.median_residual << ", rms " << r.rms_residual << '\n';
+    std::cout << "median " << r.median_residual << ", rms " << r.rms_residual
+              << " (unit of the coordinates)\n";
   else
     std::cout << "none\n";
   std::cout << "moved       rms " << r.rms_displacement << '\n'

@@ -262,7 +262,9 @@ BOOST_FIXTURE_TEST_CASE(published_rotations_do_not_see_full_turns, Deform_run)
     return largest;
   };
   BOOST_TEST(motion_of_middle(deform(edit)) > 1.5);
+  BOOST_TEST(err.find("full turns") == std::string::npos, err);
   BOOST_TEST(motion_of_middle(deform(edit, "--as-published rotations")) < 0.1);
+  BOOST_TEST(err.find("loses full turns") != std::string::npos, err);
 }
 
 BOOST_FIXTURE_TEST_CASE(values_are_checked, Deform_run)

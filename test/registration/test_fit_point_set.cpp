@@ -366,6 +366,9 @@ BOOST_AUTO_TEST_CASE(parameters_out_of_range_are_refused)
   CHECK_REFUSED(source,
                 pcs::fit_point_set(source, target, P::number_of_samples(-1)),
                 "number_of_samples is -1");
+  CHECK_REFUSED(source,
+                pcs::fit_point_set(source, target, P::number_of_samples(1)),
+                "number_of_samples is 1");
 }
 
 BOOST_AUTO_TEST_SUITE_END()

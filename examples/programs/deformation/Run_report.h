@@ -18,6 +18,7 @@
 #include <cstdio>
 #include <optional>
 #include <ostream>
+#include <sstream>
 #include <string>
 #include <sys/resource.h>
 #include <vector>
@@ -110,6 +111,22 @@ inline void warn_of_unused_variants(Run_report& run, const Model_options& model)
   if (is_blending_published && r.number_of_samples + r.number_of_duplicates >= r.number_of_points)
     run.warnings.push_back("--as-published weights and hops have no effect, because all points are "
                            "samples; choose fewer --samples");
+}
+
+/// Adds a warning if a motion exceeds the limit of the published blending of rotations.
+inline void warn_of_lost_turns(Run_report& run, const Model_options& model, const Edit& edit)
+{
+  constexpr double full_turn = 360; // [degrees]
+  if (!model.is_published("rotations"))
+    return;
+  for (const Handle& handle : edit.handles)
+    if (handle.motion.rotation && std::abs(handle.motion.rotation->degrees) > full_turn) {
+      std::ostringstream degrees;
+      degrees << handle.motion.rotation->degrees;
+      run.warnings.push_back("the handle " + handle.pointer + " turns by " + degrees.str() +
+                             " degrees; --as-published rotations loses full turns, because "
+                             "quaternions represent up to 360 degrees; omit the option");
+    }
 }
 
 inline nlohmann::ordered_json to_json(const Run_report& run, const Options& options)

@@ -105,7 +105,7 @@ public:
             `Eigen::Matrix<FT, 3, 3>`
         \npdefault none
       \np{number_of_samples} number of samples that carry the points [count]
-        \nptype integer, 1 to 100,000
+        \nptype integer, 2 to 100,000
         \npdefault 500
       \np{number_of_neighbors} nearest neighbours to which a point is linked [count]
         \nptype integer, 2 to 60

@@ -61,12 +61,13 @@ deformation::Sampling_options read_fit_sampling(const NamedParameters& np,
   options.do_preserve_volume = false;
   pcs::internal::read_parameter(np, tags::do_preserve_volume, options.do_preserve_volume);
   if constexpr (are_integers) {
-    constexpr std::size_t most_samples = 100000, least_neighbors = 2;
+    // A single sample has no edges.
+    constexpr std::size_t least_samples = 2, most_samples = 100000, least_neighbors = 2;
     options.number_of_samples = pcs::internal::check_count(
         caller,
         "number_of_samples",
         pcs::internal::choose(np, tags::number_of_samples, options.number_of_samples),
-        1,
+        least_samples,
         most_samples);
     options.number_of_neighbors = pcs::internal::check_count(
         caller,
