@@ -330,6 +330,22 @@ BOOST_AUTO_TEST_CASE(volumes_add_up_and_intervals_contain_them)
   BOOST_TEST(std::abs(w.angular_step - step) < 1e-12);
 }
 
+BOOST_AUTO_TEST_CASE(inferred_wood_is_negative_only_where_axes_may_be_too_thick)
+{
+  pcs::generators::hidden::Hidden_estimate e;
+  e.hidden_branches = {1, 2, 0, 5};
+  pcs::Inferred_volume inferred, total;
+  sum_up(e, 10, inferred, total);
+  BOOST_TEST(inferred.value == 1);
+  BOOST_TEST(inferred.least == 0);
+  BOOST_TEST(inferred.largest == 5);
+  e.radius_correction = {-3, 0.5, -4, -2};
+  sum_up(e, 10, inferred, total);
+  BOOST_TEST(inferred.value == -2);
+  BOOST_TEST(inferred.least == -4);
+  BOOST_TEST(total.value == 8);
+}
+
 BOOST_AUTO_TEST_CASE(lengths_scale)
 {
   constexpr double scale = 10;

@@ -125,7 +125,8 @@ sum_up(const Hidden_estimate& e, double measured, Inferred_volume& inferred, Inf
     variance += v->standard_error * v->standard_error;
   }
   const double error = std::sqrt(variance), sum = measured + value;
-  inferred = {value, error, value - 2 * error, value + 2 * error};
+  // branches and stems have no negative volume; measured axes may lose some
+  inferred = with_error(value, error, std::min(0.0, e.radius_correction.least));
   total = with_error(sum, std::hypot(error, Error_shares::measured * sum), 0);
 }
 
