@@ -4,9 +4,10 @@
 // and infers hidden wood.
 
 #include "common/Report_file.h"
-#include "common/read_skeleton.h"
 #include "common/run_program.h"
+#include "common/unit_warning.h"
 #include "habit/Habit_options.h"
+#include "habit/Habit_run.h"
 #include "habit/complete_wood.h"
 #include "habit/habit_json.h"
 #include <pcs/IO/write_swc.h>
@@ -14,15 +15,14 @@
 #include <pcs/core/errors.h>
 #include <pcs/generators/fit_tree_habit.h>
 #include <pcs/generators/grow_forest.h>
+#include <pcs/generators/habit/check_tree.h>
 #include <pcs/generators/score_tree.h>
-
-#include <CGAL/Simple_cartesian.h>
+#include <pcs/internal/text.h>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <iostream>
@@ -34,54 +34,53 @@ namespace program {
 
 namespace {
 
-using Kernel = CGAL::Simple_cartesian<double>;
-using Tree = pcs::Tree_skeleton<Kernel>;
 using Json_report = nlohmann::ordered_json;
 
-Tree read_tree(const std::string& path, const Habit_options& options)
+std::size_t number_of_identified(const pcs::Tree_habit_fit& fit)
 {
-  Tree tree;
-  std::vector<std::int64_t> ids;
-  for (const std::string& sentence : warnings(read_skeleton<Kernel>(path, tree, ids)))
-    std::cerr << "fit_tree_habit: warning: " << path << ": "
-              << sentence.substr(0, sentence.find(" (")) << "; split the file\n";
-  for (std::size_t v = 0; v < num_vertices(tree); ++v)
-    tree[v].radius_error = options.radius_error * tree[v].radius;
-  return tree;
+  return static_cast<std::size_t>(
+      std::count_if(fit.values.begin(), fit.values.end(), [](const pcs::Habit_value& v) {
+        return v.is_identified;
+      }));
 }
 
 void print(const pcs::Tree_habit_fit& fit)
 {
-  std::size_t identified = 0;
-  for (const pcs::Habit_value& v : fit.values)
-    identified += v.is_identified ? 1 : 0;
   std::cout << fit.number_of_trees << " trees, " << fit.number_of_branches << " branches; "
-            << identified << " of " << fit.values.size() << " parameters are identified\n";
+            << number_of_identified(fit) << " of " << fit.values.size()
+            << " parameters are identified\n";
   for (const pcs::Habit_value& v : fit.values)
     if (v.is_identified)
       std::cout << v.name << ": " << v.value << "  [" << v.least << ", " << v.largest << "]\n";
 }
 
-pcs::Tree_habit_fit fit_trees(const Habit_options& options)
+pcs::Tree_habit_fit fit_trees(Habit_run& run)
 {
-  std::vector<Tree> trees;
-  for (const std::string& path : options.input)
-    trees.push_back(read_tree(path, options));
-  const pcs::Tree_habit_fit fit =
-      pcs::fit_tree_habit(trees,
-                          pcs::parameters::random_seed(options.seed)
-                              .number_of_simulations(options.simulations)
-                              .smallest_radius(options.smallest_radius));
-  if (fit.crown_margin < 2)
-    std::cerr << "fit_tree_habit: warning: the lengths of branches fit several shapes of crowns; "
-                 "more trees may tell them apart\n";
+  const Habit_options& options = run.options;
+  std::vector<Habit_tree> trees;
+  for (const std::string& path : options.input) {
+    trees.push_back(run.read_tree(path));
+    pcs::generators::habit::checked_sample(trees.back(), options.smallest_radius, path);
+    const std::string sentence = unit_warning(extent(trees.front()), extent(trees.back()));
+    if (!sentence.empty())
+      run.warn(options.input.front() + " and " + path + ": " + sentence);
+  }
+  const pcs::Tree_habit_fit fit = name_refusals("--input", [&] {
+    return pcs::fit_tree_habit(trees,
+                               pcs::parameters::random_seed(options.seed)
+                                   .number_of_simulations(options.simulations)
+                                   .smallest_radius(options.smallest_radius));
+  });
+  for (const std::string& sentence : pcs::warnings(fit, options.input))
+    run.warn_of_library(sentence);
   if (!options.is_quiet)
     print(fit);
   return fit;
 }
 
-Json_report grow_trees(const pcs::Tree_habit_fit& fit, const Habit_options& options)
+Json_report grow_trees(const pcs::Tree_habit_fit& fit, const Habit_run& run)
 {
+  const Habit_options& options = run.options;
   pcs::Forest_options forest_options;
   forest_options.number_of_trees = static_cast<std::size_t>(options.grow);
   forest_options.height = options.height;
@@ -89,10 +88,17 @@ Json_report grow_trees(const pcs::Tree_habit_fit& fit, const Habit_options& opti
   forest_options.age = {options.age.front(), options.age.back()};
   forest_options.stem_distance = options.distance;
   forest_options.random_seed = static_cast<std::uint64_t>(options.seed);
-  const auto forest = pcs::grow_forest<Kernel>(fit, forest_options);
+  const std::string cause =
+      options.height > 0 ? "--height " + pcs::internal::to_text(options.height) +
+                               " (the habit has " + pcs::internal::to_text(fit.habit.height) + ")"
+                         : options.habit;
+  auto forest =
+      name_refusals(cause, [&] { return pcs::grow_forest<Habit_kernel>(fit, forest_options); });
   Json_report report = Json_report::array();
   for (std::size_t i = 0; i < forest.size(); ++i) {
-    const auto& [tree, height, age] = forest[i];
+    auto& [tree, height, age] = forest[i];
+    for (std::size_t v = 0; v < num_vertices(tree); ++v)
+      tree[v].point = run.upright.back(tree[v].point);
     const std::string path = output_name(options.output, i, forest.size());
     pcs::IO::write_swc(path, tree);
     const auto& root = tree[tree[boost::graph_bundle].root].point;
@@ -100,6 +106,7 @@ Json_report grow_trees(const pcs::Tree_habit_fit& fit, const Habit_options& opti
     report.push_back({{"file", path},
                       {"x", root.x()},
                       {"y", root.y()},
+                      {"z", root.z()},
                       {"height", height},
                       {"age", age},
                       {"branches", tree[boost::graph_bundle].branches.size()},
@@ -111,14 +118,18 @@ Json_report grow_trees(const pcs::Tree_habit_fit& fit, const Habit_options& opti
   return report;
 }
 
-Json_report score_trees(const pcs::Tree_habit_fit& fit, const Habit_options& options)
+Json_report score_trees(const pcs::Tree_habit_fit& fit, Habit_run& run)
 {
+  const Habit_options& options = run.options;
   Json_report report = Json_report::array();
   for (const std::string& path : options.score) {
-    const pcs::Tree_score score = pcs::score_tree(
-        read_tree(path, options),
-        fit,
-        pcs::parameters::random_seed(options.seed).number_of_simulations(options.simulations));
+    const Habit_tree tree = run.read_other_tree(path, fit.smallest_radius);
+    const pcs::Tree_score score = name_refusals(path, [&] {
+      return pcs::score_tree(
+          tree,
+          fit,
+          pcs::parameters::random_seed(options.seed).number_of_simulations(options.simulations));
+    });
     Json_report deviations;
     for (const pcs::Tree_deviation& d : score.deviations)
       deviations[d.name] = d.deviation;
@@ -139,13 +150,13 @@ Json_report score_trees(const pcs::Tree_habit_fit& fit, const Habit_options& opt
 }
 
 /// Infers the hidden wood of one tree; writes its branches, and returns the figures.
-Json_report complete_tree(const pcs::Tree_habit_fit& fit,
-                          const Habit_options& options,
-                          Report_file* branch_file)
+Json_report complete_tree(const pcs::Tree_habit_fit& fit, Habit_run& run, Report_file* branch_file)
 {
-  const auto wood = complete_wood(read_tree(options.complete, options), fit, options);
+  const Habit_options& options = run.options;
+  const auto wood =
+      complete_wood(run.read_other_tree(options.complete, fit.smallest_radius), fit, run);
   for (const std::string& sentence : warnings(wood))
-    std::cerr << "fit_tree_habit: warning: " << options.complete << ": " << sentence << '\n';
+    run.warn(options.complete + ": " + sentence);
   if (branch_file != nullptr)
     branch_file->commit(swc_of(wood));
   if (!options.is_quiet)
@@ -168,20 +179,29 @@ void run(const Habit_options& options)
     report_file.emplace(options.report);
   if (!options.inferred.empty())
     branch_file.emplace(options.inferred);
+  Habit_run run(options);
   std::string unit = options.unit;
   pcs::Tree_habit_fit fit;
+  Json_report report = {{"program", "fit_tree_habit"},
+                        {"version", PCS_PROGRAM_VERSION},
+                        {"habit", options.habit}};
   if (habit_file) {
-    fit = fit_trees(options);
+    fit = fit_trees(run);
     habit_file->commit(json_of(fit, unit, options.input));
+    report["number_of_trees"] = fit.number_of_trees;
+    report["number_of_branches"] = fit.number_of_branches;
+    report["number_of_parameters"] = fit.values.size();
+    report["number_of_identified_parameters"] = number_of_identified(fit);
   } else
     fit = read_habit(options.habit, unit);
-  Json_report report = {{"habit", options.habit}, {"length_unit", unit}};
+  report["length_unit"] = unit;
   if (options.grow > 0)
-    report["trees"] = grow_trees(fit, options);
+    report["trees"] = grow_trees(fit, run);
   if (!options.score.empty())
-    report["scores"] = score_trees(fit, options);
+    report["scores"] = score_trees(fit, run);
   if (!options.complete.empty())
-    report["hidden_wood"] = complete_tree(fit, options, branch_file ? &*branch_file : nullptr);
+    report["hidden_wood"] = complete_tree(fit, run, branch_file ? &*branch_file : nullptr);
+  report["warnings"] = run.warnings;
   if (report_file)
     report_file->commit(report);
 }

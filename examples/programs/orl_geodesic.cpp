@@ -3,6 +3,7 @@
 // Program: computes trees between and beyond scanned trees, their mean, and similar random trees.
 
 #include "common/run_program.h"
+#include "common/unit_warning.h"
 #include "common/up_direction.h"
 #include "shape_space/Results.h"
 #include "shape_space/Tree_file.h"
@@ -277,23 +278,16 @@ std::vector<Tree_file> read_trees(const Options& o)
 void warn_of_places(const Options& o, const std::vector<Tree_file>& files)
 {
   constexpr double largest_ratio = 100;
-  const auto extent = [](const Skeleton& tree) {
-    CGAL::Bbox_3 box;
-    for (std::size_t v = 0; v < num_vertices(tree); ++v)
-      box += tree[v].point.bbox();
-    return std::hypot(box.xmax() - box.xmin(), box.ymax() - box.ymin(), box.zmax() - box.zmin());
-  };
   const auto root_of = [](const Tree_file& file) {
     return file.skeleton[file.skeleton[boost::graph_bundle].root].point;
   };
   const std::vector<std::string>& names = o.skeletons.empty() ? o.trees : o.skeletons;
   for (std::size_t i = 1; i < files.size() && !o.is_quiet; ++i) {
-    const double a = extent(files[0].skeleton), b = extent(files[i].skeleton);
+    const double a = program::extent(files[0].skeleton), b = program::extent(files[i].skeleton);
     const double distance = std::sqrt(CGAL::squared_distance(root_of(files[0]), root_of(files[i])));
     std::ostringstream text;
-    if (std::max(a, b) > largest_ratio * std::min(a, b))
-      text << "the extents are " << a << " and " << b << "; check the units of both trees";
-    else if (distance > largest_ratio * std::max(a, b))
+    text << program::unit_warning(a, b);
+    if (text.str().empty() && distance > largest_ratio * std::max(a, b))
       text << "the roots are " << distance << " apart, and the extents are " << a << " and " << b
            << "; check the units and origins of both trees";
     if (!text.str().empty())

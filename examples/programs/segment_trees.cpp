@@ -89,10 +89,7 @@ void declare(CLI::App& app, Options& options)
   app.add_option("--min-points", options.min_points, "trees with fewer points get no file")
       ->check(CLI::Range(std::int64_t(0), std::int64_t(1) << 53))
       ->capture_default_str();
-  app.add_option("--up",
-                 options.up,
-                 "up direction: x, y, z, -x, -y or -z; default: that of the tile results, else z")
-      ->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}));
+  add_up(app, options.up, "up direction", "; default: that of the tile results, else z");
   app.add_option("--breast-height",
                  options.breast_height,
                  "height of the diameter of stems, which scales all size limits")

@@ -5,6 +5,7 @@
 #include "common/Distinct_files.h"
 #include "common/Report_file.h"
 #include "common/run_program.h"
+#include "common/up_direction.h"
 #include "tiling/Count_grid.h"
 #include "tiling/Point_files.h"
 #include "tiling/Tile_files.h"
@@ -109,9 +110,7 @@ void declare(CLI::App& app, Options& options)
   app.add_option("--cell", options.cell, "smallest side of a tile: tiles consist of such cells")
       ->capture_default_str();
   app.add_option("--voxel", options.voxel, "voxel size for thinning; default: all points are kept");
-  app.add_option("--up", options.up, "up direction: x, y, z, -x, -y or -z")
-      ->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}))
-      ->capture_default_str();
+  add_up(app, options.up, "up direction")->capture_default_str();
   app.add_option("--open-files", options.open_files, "tiles that are written in one pass")
       ->check(CLI::Range(std::int64_t(1), std::int64_t(max_tiles)))
       ->capture_default_str();

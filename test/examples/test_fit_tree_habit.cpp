@@ -8,10 +8,12 @@
 #include <pcs/IO/write_swc.h>
 #include <pcs/generators/grow_tree.h>
 
+#include <CGAL/Origin.h>
 #include <CGAL/Simple_cartesian.h>
 
 #include <boost/test/unit_test.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <examples/Program_run.h>
@@ -133,6 +135,87 @@ BOOST_AUTO_TEST_CASE(another_kind_of_tree_is_an_outlier)
   BOOST_TEST(out.find("largest deviations") != std::string::npos);
 }
 
+BOOST_AUTO_TEST_CASE(any_axis_may_be_up)
+{
+  const std::string options =
+      "--simulations 20 --quiet --grow 1 --distance 0 --report report.json ";
+  BOOST_TEST_REQUIRE(run("--input tree_1.swc --habit z.json -o z.swc " + options) == 0, err);
+  BOOST_TEST(err.find("tilted") == std::string::npos, err);
+  const Json expected = Json::parse(content("z.json"))["values"];
+  Tree tree, grown, other;
+  pcs::IO::read_swc<Kernel>(path("tree_1.swc"), tree);
+  pcs::IO::read_swc<Kernel>(path("z.swc"), grown);
+  // each rotation moves z to the axis, and keeps the handedness
+  const std::vector<std::pair<std::string, Kernel::Point_3 (*)(const Kernel::Point_3&)>> axes = {
+      {"x", [](const Kernel::Point_3& p) { return Kernel::Point_3(p.z(), p.x(), p.y()); }},
+      {"y", [](const Kernel::Point_3& p) { return Kernel::Point_3(p.y(), p.z(), p.x()); }},
+      {"-x", [](const Kernel::Point_3& p) { return Kernel::Point_3(-p.z(), p.y(), p.x()); }},
+      {"-y", [](const Kernel::Point_3& p) { return Kernel::Point_3(p.x(), -p.z(), p.y()); }},
+      {"-z", [](const Kernel::Point_3& p) { return Kernel::Point_3(p.x(), -p.y(), -p.z()); }}};
+  for (const auto& [name, rotated] : axes) {
+    Tree lying = tree;
+    for (std::size_t v = 0; v < num_vertices(tree); ++v)
+      lying[v].point = rotated(tree[v].point);
+    pcs::IO::write_swc(path("lying.swc"), lying);
+    const std::string arguments = "--input lying.swc --habit up.json -o up.swc --up " + name + " ";
+    BOOST_TEST_REQUIRE(run(arguments + options) == 0, err);
+    BOOST_TEST(Json::parse(content("up.json"))["values"] == expected, name);
+    pcs::IO::read_swc<Kernel>(path("up.swc"), other);
+    BOOST_TEST_REQUIRE(num_vertices(other) == num_vertices(grown));
+    for (std::size_t v = 0; v < num_vertices(grown); ++v)
+      BOOST_TEST_REQUIRE((other[v].point == rotated(grown[v].point)), name << " " << v);
+  }
+  // without the option, the trunk seems to be far from the vertical
+  const std::string tilted = "lying.swc: the trunk is tilted by ";
+  BOOST_TEST_REQUIRE(run("--input lying.swc --habit up.json -o up.swc " + options) == 0, err);
+  BOOST_TEST(err.find(tilted) != std::string::npos, err);
+  BOOST_TEST(err.find("from the vertical, which is --up z") != std::string::npos, err);
+  BOOST_TEST(content("report.json").find(tilted) != std::string::npos);
+  BOOST_TEST_REQUIRE(run("--habit z.json --score lying.swc --quiet --simulations 20") == 0, err);
+  BOOST_TEST(err.find(tilted) != std::string::npos, err);
+  refuses("--habit z.json --score lying.swc --up w", "--up");
+}
+
+BOOST_AUTO_TEST_CASE(other_units_are_noticed)
+{
+  fit();
+  Tree tree;
+  pcs::IO::read_swc<Kernel>(path("tree_1.swc"), tree);
+  for (std::size_t v = 0; v < num_vertices(tree); ++v) {
+    tree[v].point = CGAL::ORIGIN + 1000 * (tree[v].point - CGAL::ORIGIN);
+    tree[v].radius *= 1000;
+  }
+  pcs::IO::write_swc(path("mm.swc"), tree);
+  BOOST_TEST_REQUIRE(run("--input tree_2.swc mm.swc --habit both.json --simulations 20 --quiet "
+                         "--report report.json") == 0,
+                     err);
+  const std::string warning = "tree_2.swc and mm.swc: the extents are ";
+  BOOST_TEST(err.find(warning) != std::string::npos, err);
+  BOOST_TEST(content("report.json").find(warning) != std::string::npos);
+  refuses("--habit habit.json --score mm.swc", "mm.swc: pcs::score_tree(): the trunk has the");
+  refuses("--habit habit.json --grow 1 -o a.swc --height 3200", "--height 3200 (the habit has 3.2");
+  refuses("--habit habit.json --grow 1 -o a.swc --height 3200", "branches are 0.1");
+}
+
+BOOST_AUTO_TEST_CASE(the_report_counts_what_was_found)
+{
+  const std::string arguments =
+      "--input tree_1.swc tree_2.swc --habit habit.json --simulations 20 ";
+  BOOST_TEST_REQUIRE(run(arguments + "--report report.json") == 0, err);
+  report = Json::parse(content("report.json"));
+  const Json habit = Json::parse(content("habit.json"));
+  std::size_t identified = 0;
+  for (const Json& v : habit["values"])
+    identified += v["is_identified"] == true ? 1 : 0;
+  BOOST_TEST(report["program"] == "fit_tree_habit");
+  BOOST_TEST(report["version"].get<std::string>().size() >= 5u);
+  BOOST_TEST(report["number_of_trees"] == 2);
+  BOOST_TEST(report["number_of_branches"] == habit["number_of_branches"]);
+  BOOST_TEST(report["number_of_parameters"] == habit["values"].size());
+  BOOST_TEST(report["number_of_identified_parameters"] == identified);
+  BOOST_TEST(report["warnings"].is_array());
+}
+
 BOOST_AUTO_TEST_CASE(bad_input_is_refused_and_touches_no_file)
 {
   fit();
@@ -187,6 +270,8 @@ BOOST_AUTO_TEST_CASE(hidden_wood_is_written_as_inferred)
   const Json total = wood["measured_and_inferred_volume"];
   BOOST_TEST(measured > 0);
   BOOST_TEST(std::abs(total["value"].get<double>() - measured - inferred) < 1e-9);
+  BOOST_TEST(wood["inferred_volume"]["interval_95"][0].get<double>() >=
+             std::min(0.0, wood["inferred_radius_correction"]["interval_95"][0].get<double>()));
   BOOST_TEST(total["interval_95"][0] < total["value"]);
   BOOST_TEST(total["interval_95"][1] > total["value"]);
   BOOST_TEST(std::abs(wood["angular_step"].get<double>() - 0.01) < 1e-5);
@@ -204,6 +289,30 @@ BOOST_AUTO_TEST_CASE(hidden_wood_is_written_as_inferred)
   const int both = run(arguments + "--scanner 0 6 1.5 6 0 1.5 --report both.json");
   BOOST_TEST_REQUIRE(both == 0, err);
   BOOST_TEST(Json::parse(content("both.json"))["hidden_wood"] == wood);
+
+  // in other coordinates, y is up: the same wood
+  const auto rotated = [](const Kernel::Point_3& p) {
+    return Kernel::Point_3(p.y(), p.z(), p.x());
+  };
+  Tree tree, upright, lying;
+  pcs::IO::read_swc<Kernel>(path("tree_1.swc"), tree);
+  for (std::size_t v = 0; v < num_vertices(tree); ++v)
+    tree[v].point = rotated(tree[v].point);
+  pcs::IO::write_swc(path("lying.swc"), tree);
+  pcs::IO::Point_table table = pcs::IO::read_points(path("scan.ply"));
+  for (Kernel::Point_3& p : table.points())
+    p = rotated(p);
+  pcs::IO::write_points(path("lying.ply"), table);
+  BOOST_TEST_REQUIRE(run("--habit habit.json --complete lying.swc --scan lying.ply --up y "
+                         "--scanner 0 1.5 6 --simulations 20 --inferred back.swc "
+                         "--report lying.json") == 0,
+                     err);
+  BOOST_TEST(Json::parse(content("lying.json"))["hidden_wood"] == wood);
+  pcs::IO::read_swc<Kernel>(path("inferred.swc"), upright);
+  pcs::IO::read_swc<Kernel>(path("back.swc"), lying);
+  BOOST_TEST_REQUIRE(num_vertices(lying) == num_vertices(upright));
+  for (std::size_t v = 0; v < num_vertices(lying); ++v)
+    BOOST_TEST_REQUIRE((lying[v].point == rotated(upright[v].point)));
 }
 
 BOOST_AUTO_TEST_CASE(options_of_hidden_wood_are_checked)

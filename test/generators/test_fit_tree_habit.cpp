@@ -6,6 +6,7 @@
 #include <pcs/generators/Tree_habit_fit.h>
 #include <pcs/generators/fit_tree_habit.h>
 #include <pcs/generators/grow_tree.h>
+#include <pcs/internal/constants.h>
 #include <support/trees.h>
 
 #include <CGAL/Simple_cartesian.h>
@@ -25,6 +26,7 @@ namespace test_fit_tree_habit {
 using Kernel = CGAL::Simple_cartesian<double>;
 using Tree = pcs::Tree_skeleton<Kernel>;
 namespace np = pcs::parameters;
+using pcs::internal::pi;
 
 namespace {
 
@@ -210,6 +212,35 @@ BOOST_AUTO_TEST_CASE(threads_do_not_change_a_bit)
     BOOST_TEST(a.values[i].least == b.values[i].least, a.values[i].name);
     BOOST_TEST(a.values[i].largest == b.values[i].largest, a.values[i].name);
   }
+}
+
+BOOST_AUTO_TEST_CASE(trees_that_lie_are_named_and_have_bounded_angles)
+{
+  std::vector<Tree> trees = two_fruit_trees();
+  const auto upright = pcs::fit_tree_habit(trees, np::number_of_simulations(20));
+  BOOST_TEST_REQUIRE(upright.trunk_tilts.size() == 2u);
+  BOOST_TEST(upright.trunk_tilts[0] < 0.5);
+  for (const std::string& sentence : pcs::warnings(upright))
+    BOOST_TEST(sentence.find("tilted") == std::string::npos, sentence);
+
+  for (std::size_t v = 0; v < num_vertices(trees[1]); ++v) { // y is up
+    const Kernel::Point_3 p = trees[1][v].point;
+    trees[1][v].point = Kernel::Point_3(p.y(), p.z(), p.x());
+  }
+  const auto fit = pcs::fit_tree_habit(trees, np::number_of_simulations(20));
+  BOOST_TEST(fit.trunk_tilts[0] == upright.trunk_tilts[0]);
+  BOOST_TEST(fit.trunk_tilts[1] > 1.0);
+  BOOST_TEST(!value_of(fit, "lean").is_identified); // at its limit
+  for (const pcs::Habit_value& v : fit.values) {
+    BOOST_TEST((v.least <= v.value && v.value <= v.largest), v.name);
+    if (v.unit == "rad")
+      BOOST_TEST((v.least >= 0 && v.largest <= pi), v.name << " up to " << v.largest);
+  }
+  BOOST_TEST(value_of(fit, "lean").largest <= pi / 2);
+  const std::vector<std::string> found = pcs::warnings(fit, {"a.swc", "b.swc"});
+  BOOST_TEST_REQUIRE(!found.empty());
+  BOOST_TEST(found[0].find("b.swc: the trunk is tilted by ") == 0u, found[0]);
+  BOOST_TEST(pcs::warnings(fit)[0].find("tree 1: ") == 0u);
 }
 
 BOOST_AUTO_TEST_CASE(any_kernel_will_do)

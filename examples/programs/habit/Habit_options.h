@@ -7,6 +7,7 @@
 
 #include "common/Distinct_files.h"
 #include "common/is_seed.h"
+#include "common/up_direction.h"
 #include <pcs/core/errors.h>
 
 #include <CLI/CLI.hpp>
@@ -24,7 +25,7 @@ struct Habit_options
 {
   std::vector<std::string> input, score;
   std::string habit, output, report;
-  std::string unit = "m";
+  std::string unit = "m", up = "z";
   double smallest_radius = 0, radius_error = 0;
   std::int64_t simulations = 100, seed = 0, grow = 0;
   double height = 0, height_spread = -1, distance = -1;
@@ -38,7 +39,9 @@ struct Habit_options
 inline const char* habit_help()
 {
   return R"(With --input, the growth parameters of the trees are found and written to --habit.
-Without it, --habit is read. Skeletons are SWC, CSV, tables of cylinders, or .txtskl; z is up.
+Without it, --habit is read. Skeletons are SWC, CSV, tables of cylinders, or .txtskl. --up is the
+up direction of all files with coordinates: skeletons, the scan, and the trees that are written. A
+warning tells when a trunk is far from it.
 
 The habit is a JSON file: all parameters with standard errors and 95 % intervals, whether the
 trees determine them, power laws of the sizes, and the quantiles of lengths, radii, angles and
@@ -81,7 +84,8 @@ inline void declare(CLI::App& app, Habit_options& o)
   app.add_option("--simulations", o.simulations, "grown trees for intervals and scores")
       ->check(CLI::Range(std::int64_t(20), std::int64_t(100000)))
       ->capture_default_str();
-  app.add_option("--report", o.report, "write trees and scores here (JSON)");
+  add_up(app, o.up, "up direction of all skeletons and scans")->capture_default_str();
+  app.add_option("--report", o.report, "write counts, warnings, trees and scores here (JSON)");
   app.add_flag("--quiet", o.is_quiet, "print warnings and errors only");
 
   const char* fit = "Fit";

@@ -6,6 +6,7 @@
 #define PCS_EXAMPLES_PROGRAMS_HABIT_COMPLETE_WOOD_H
 
 #include "Habit_options.h"
+#include "Habit_run.h"
 #include "common/Report_file.h"
 #include <pcs/IO/internal/numbers.h>
 #include <pcs/IO/points/Point_table.h>
@@ -15,7 +16,6 @@
 #include <pcs/generators/Tree_habit_fit.h>
 #include <pcs/generators/complete_hidden_wood.h>
 
-#include <CGAL/Simple_cartesian.h>
 #include <CGAL/property_map.h>
 
 #include <nlohmann/json.hpp>
@@ -29,7 +29,7 @@
 
 namespace program {
 
-using Wood_kernel = CGAL::Simple_cartesian<double>;
+using Wood_kernel = Habit_kernel;
 
 /// The inferred branches as SWC. The first comment says that they are inferred; nodes without
 /// parent begin on the measured skeleton.
@@ -126,32 +126,41 @@ stations_of(const pcs::IO::Point_table& table, std::size_t number, const Habit_o
   return result;
 }
 
-/// Reads the scan and infers the hidden wood of `tree`.
+/// Reads the scan and infers the hidden wood of `tree`, whose z axis is up. The inferred branches
+/// have the coordinates of the scan.
 inline pcs::Hidden_wood<Wood_kernel> complete_wood(const pcs::Tree_skeleton<Wood_kernel>& tree,
                                                    const pcs::Tree_habit_fit& fit,
-                                                   const Habit_options& options)
+                                                   const Habit_run& run)
 {
+  const Habit_options& options = run.options;
   using Labelled = std::pair<Wood_kernel::Point_3, std::int64_t>;
   std::vector<Wood_kernel::Point_3> scanners;
   for (std::size_t i = 0; i + 2 < options.scanners.size(); i += 3)
-    scanners.emplace_back(options.scanners[i], options.scanners[i + 1], options.scanners[i + 2]);
+    scanners.push_back(run.upright(Wood_kernel::Point_3(options.scanners[i],
+                                                        options.scanners[i + 1],
+                                                        options.scanners[i + 2])));
   const pcs::IO::Point_table table = pcs::IO::read_points(options.scan);
   const std::vector<std::int64_t> stations = stations_of(table, scanners.size(), options);
   std::vector<Labelled> points;
   points.reserve(stations.size());
   for (std::size_t i = 0; i < stations.size(); ++i) {
     const auto& p = table.points()[i];
-    points.emplace_back(Wood_kernel::Point_3(p.x(), p.y(), p.z()), stations[i]);
+    points.emplace_back(run.upright(Wood_kernel::Point_3(p.x(), p.y(), p.z())), stations[i]);
   }
-  return pcs::complete_hidden_wood(tree,
-                                   points,
-                                   fit,
-                                   pcs::parameters::scanner_positions(scanners)
-                                       .point_map(CGAL::First_of_pair_property_map<Labelled>())
-                                       .station_map(CGAL::Second_of_pair_property_map<Labelled>())
-                                       .angular_step(options.step_degrees * CGAL_PI / 180)
-                                       .number_of_simulations(options.simulations)
-                                       .random_seed(options.seed));
+  auto wood = name_refusals(options.complete, [&] {
+    return pcs::complete_hidden_wood(tree,
+                                     points,
+                                     fit,
+                                     pcs::parameters::scanner_positions(scanners)
+                                         .point_map(CGAL::First_of_pair_property_map<Labelled>())
+                                         .station_map(CGAL::Second_of_pair_property_map<Labelled>())
+                                         .angular_step(options.step_degrees * CGAL_PI / 180)
+                                         .number_of_simulations(options.simulations)
+                                         .random_seed(options.seed));
+  });
+  for (std::size_t v = 0; v < num_vertices(wood.branches); ++v)
+    wood.branches[v].point = run.upright.back(wood.branches[v].point);
+  return wood;
 }
 
 } // namespace program

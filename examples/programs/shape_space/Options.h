@@ -7,6 +7,7 @@
 
 #include "Method_options.h"
 #include "common/is_seed.h"
+#include "common/up_direction.h"
 #include <pcs/core/errors.h>
 
 #include <CLI/CLI.hpp>
@@ -240,9 +241,7 @@ Exit codes: 0 success, 1 bad input or usage, 2 internal error.)");
          "the previous one")
       ->check(CLI::IsMember({"none", "yaw"}))
       ->capture_default_str();
-  app.add_option("--up", o.up, "the vertical")
-      ->check(CLI::IsMember({"x", "y", "z"}))
-      ->capture_default_str();
+  program::add_up(app, o.up, "up direction")->capture_default_str();
   app.add_option("--max-extrapolation-degrees",
                  o.max_extrapolation_angle,
                  "largest rotation of an edge beyond an end of the path [degrees]")

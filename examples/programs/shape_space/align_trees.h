@@ -21,11 +21,11 @@ namespace orl_program {
 /// Rotates a tree by `angle` about the vertical axis through the root. [rad]
 inline void turn_tree(Tree_file& tree, const std::string& up, double angle)
 {
-  const double c = std::cos(angle), s = std::sin(angle);
+  const double c = std::cos(angle), s = up.front() == '-' ? -std::sin(angle) : std::sin(angle);
   using Turn = CGAL::Aff_transformation_3<Kernel>;
-  const Turn turn = up == "x"   ? Turn(1, 0, 0, 0, c, -s, 0, s, c)
-                    : up == "y" ? Turn(c, 0, s, 0, 1, 0, -s, 0, c)
-                                : Turn(c, -s, 0, s, c, 0, 0, 0, 1);
+  const Turn turn = up.back() == 'x'   ? Turn(1, 0, 0, 0, c, -s, 0, s, c)
+                    : up.back() == 'y' ? Turn(c, 0, s, 0, 1, 0, -s, 0, c)
+                                       : Turn(c, -s, 0, s, c, 0, 0, 0, 1);
   const Kernel::Point_3 root = tree.skeleton[tree.skeleton[boost::graph_bundle].root].point;
   const auto turned = [&](const Kernel::Point_3& p) { return root + turn.transform(p - root); };
   for (std::size_t v = 0; v < num_vertices(tree.skeleton); ++v)

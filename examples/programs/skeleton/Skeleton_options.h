@@ -6,6 +6,7 @@
 #define PCS_EXAMPLES_PROGRAMS_SKELETON_SKELETON_OPTIONS_H
 
 #include "common/Distinct_files.h"
+#include "common/up_direction.h"
 #include <pcs/IO/internal/extensions.h>
 #include <pcs/IO/write_mesh.h>
 #include <pcs/core/Skeleton_options.h>
@@ -167,9 +168,7 @@ inline void declare(CLI::App& app, Skeleton_options& options)
                  "with --folder: mesh, cylinders, branches, tree-table, edges, points")
       ->check(CLI::IsMember({"mesh", "cylinders", "branches", "tree-table", "edges", "points"}))
       ->delimiter(',');
-  app.add_option("--up", options.up, "up direction: x, y, z, -x, -y or -z")
-      ->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}))
-      ->capture_default_str();
+  add_up(app, options.up, "up direction")->capture_default_str();
   app.add_option("--root",
                  options.root,
                  "x y z of the foot of the trunk; default: the foot that "

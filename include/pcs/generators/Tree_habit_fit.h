@@ -6,7 +6,9 @@
 #define PCS_GENERATORS_TREE_HABIT_FIT_H
 
 #include <pcs/core/errors.h>
+#include <pcs/core/parameters/check_value.h>
 #include <pcs/generators/Tree_habit.h>
+#include <pcs/internal/constants.h>
 #include <pcs/internal/text.h>
 
 #include <array>
@@ -83,6 +85,7 @@ struct Tree_habit_fit
   //! the logarithm of the likelihood of `habit.crown`, minus that of the next shape; below 2, the
   //! trees do not distinguish the two [-]
   double crown_margin = 0;
+  std::vector<double> trunk_tilts; //!< of each tree: the angle of its trunk to z, base to tip [rad]
 };
 
 /*!
@@ -111,6 +114,55 @@ inline Tree_habit habit_at_height(const Tree_habit_fit& fit, double height)
   habit.flare_height *= size;
   habit.crown_radius *= std::pow(size, fit.allometry.crown_radius_exponent);
   return habit;
+}
+
+namespace internal {
+
+/// Returns a sentence about a tree whose trunk is far from the vertical; empty for others.
+inline std::string tilt_warning(const std::string& tree, double tilt)
+{
+  constexpr double largest = 45, degree = pi / 180;
+  if (!(tilt > largest * degree))
+    return {};
+  return tree + ": the trunk is tilted by " + std::to_string(std::lround(tilt / degree)) +
+         " degrees from the vertical, which must be z";
+}
+
+/// Throws `Invalid_input` unless the tree is in the unit of length of the habit, as far as the
+/// length of its trunk shows.
+inline void check_unit(double height, const Tree_habit_fit& fit, const std::string& caller)
+{
+  constexpr double largest_ratio = 100;
+  const double known = fit.allometry.height;
+  check(known <= 0 || (height < largest_ratio * known && known < largest_ratio * height),
+        caller,
+        "the trunk has the length " + to_text(height) + ", and those of the habit have " +
+            to_text(known) + "; use one unit of length for the tree and the habit");
+}
+
+} // namespace internal
+
+/*!
+  \ingroup PkgPcsGeneratorsRef
+  \brief returns sentences about a fit that is probably wrong or ambiguous; none if all is well.
+
+  \param fit a result of `fit_tree_habit()`
+  \param names of the trees; otherwise they are `tree 0`, `tree 1`, ...
+*/
+inline std::vector<std::string> warnings(const Tree_habit_fit& fit,
+                                         const std::vector<std::string>& names = {})
+{
+  std::vector<std::string> result;
+  for (std::size_t i = 0; i < fit.trunk_tilts.size(); ++i) {
+    const std::string name = i < names.size() ? names[i] : "tree " + std::to_string(i);
+    const std::string sentence = internal::tilt_warning(name, fit.trunk_tilts[i]);
+    if (!sentence.empty())
+      result.push_back(sentence);
+  }
+  if (fit.number_of_trees > 0 && fit.crown_margin < 2)
+    result.push_back("the lengths of branches fit several shapes of crowns; more trees may tell "
+                     "them apart");
+  return result;
 }
 
 } // namespace pcs

@@ -194,18 +194,6 @@ inline generators::hidden::Beam_visibility visibility_of(Hidden_wood_input& inpu
   return hidden::Beam_visibility(std::move(views));
 }
 
-/// Throws `Invalid_input` unless the tree is in the unit of length of the habit, as far as its
-/// height shows.
-inline void check_unit(double height, const Tree_habit_fit& fit)
-{
-  constexpr double largest_ratio = 100;
-  const double known = fit.allometry.height;
-  check(known <= 0 || (height < largest_ratio * known && known < largest_ratio * height),
-        hidden_wood_caller,
-        "the trunk has the length " + to_text(height) + ", and those of the habit have " +
-            to_text(known) + "; use one unit of length for the tree and the habit");
-}
-
 /// Adds the inferred branches to the graph of the result.
 template <class Kernel>
 void add_inferred_branches(const generators::habit::Tree_sample& sample,
@@ -320,9 +308,10 @@ Hidden_wood<Kernel> complete_hidden_wood(const Tree_skeleton<Kernel>& tree,
 {
   namespace hidden = generators::hidden;
   internal::Hidden_wood_input input = internal::read_hidden_wood_input(np);
+  const std::string caller = internal::hidden_wood_caller;
   const auto sample =
-      generators::habit::checked_sample(tree, fit.smallest_radius, internal::hidden_wood_caller, 0);
-  internal::check_unit(sample.axes.front().length(), fit);
+      generators::habit::checked_sample(tree, fit.smallest_radius, caller + ": the tree");
+  internal::check_unit(sample.axes.front().length(), fit, caller);
   const Tree_habit habit = habit_at_height(fit, sample.axes.front().length());
   internal::check_habit(habit);
   internal::read_station_points(points, np, input);

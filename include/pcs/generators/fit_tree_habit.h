@@ -11,6 +11,7 @@
 #include <pcs/core/parameters/check_value.h>
 #include <pcs/core/parameters/read_parameter.h>
 #include <pcs/generators/Tree_habit_fit.h>
+#include <pcs/generators/habit/Habit_parameters.h>
 #include <pcs/generators/habit/Tree_sample.h>
 #include <pcs/generators/habit/check_tree.h>
 #include <pcs/generators/habit/fit_samples.h>
@@ -78,6 +79,10 @@ inline void mark_identified(Tree_habit_fit& fit)
       v.is_identified = v.is_identified && v.value > 1.2 * fit.smallest_radius;
     if (v.name == "flare_height")
       v.is_identified = v.is_identified && fit.habit.flare > 0.03;
+    if (v.name == "lean") // a larger one is cut
+      v.is_identified = v.is_identified && v.value < generators::habit::largest_lean;
+    if (v.name.rfind("bend[", 0) == 0)
+      v.is_identified = v.is_identified && v.value < generators::habit::largest_bend;
   }
 }
 
@@ -106,7 +111,8 @@ inline void mark_identified(Tree_habit_fit& fit)
           `CGAL::Parallel_if_available_tag`
   \tparam TreeRange a range of `Tree_skeleton<Kernel>`
   \tparam NamedParameters a sequence of named parameters
-  \param trees skeletons with branches, z upwards, lengths in one unit [L]; `n` trees
+  \param trees skeletons with branches, z upwards, lengths in one unit [L]; `n` trees. `warnings()`
+         of the result names trees that seem to have another vertical
   \param np an optional sequence of named parameters, listed below
   \npbegin
     \np{smallest_radius} the resolution: thinner parts of the trees are left out [L]
@@ -144,16 +150,18 @@ Tree_habit_fit fit_tree_habit(const TreeRange& trees,
     const internal::Habit_options options = internal::read_habit_options(np);
     std::vector<habit::Tree_sample> samples;
     for (const Tree& tree : trees)
-      samples.push_back(habit::checked_sample(tree,
-                                              options.smallest_radius,
-                                              "pcs::fit_tree_habit()",
-                                              samples.size()));
+      samples.push_back(
+          habit::checked_sample(tree,
+                                options.smallest_radius,
+                                "pcs::fit_tree_habit(): tree " + std::to_string(samples.size())));
     internal::check(!samples.empty(), "pcs::fit_tree_habit()", "`trees` is empty; pass a tree");
     fit = habit::fit_samples<ConcurrencyTag>(samples,
                                              options.smallest_radius,
                                              options.seed,
                                              options.number_of_simulations);
     internal::mark_identified(fit);
+    for (const habit::Tree_sample& sample : samples)
+      fit.trunk_tilts.push_back(habit::trunk_tilt(sample));
   }
   return fit;
 }

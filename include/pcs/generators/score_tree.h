@@ -155,7 +155,8 @@ Tree_score score_sample(const generators::habit::Tree_sample& sample,
       \nptype integer
       \npdefault `0`
   \npend
-  \throws pcs::Invalid_input as `fit_tree_habit()`, or when the habit is invalid
+  \throws pcs::Invalid_input as `fit_tree_habit()`, when the habit is invalid, or when the trunk is
+          a hundred times as long as those of the habit, or as short
   \par Complexity
   Linear in the number of grown trees.
   \par Determinism
@@ -187,7 +188,8 @@ Tree_score score_tree(const Tree& tree,
                               100'000);
     const std::uint64_t seed = internal::read_random_seed(np);
     const habit::Tree_sample sample =
-        habit::checked_sample(tree, fit.smallest_radius, "pcs::score_tree()", 0);
+        habit::checked_sample(tree, fit.smallest_radius, "pcs::score_tree(): the tree");
+    internal::check_unit(sample.axes.front().length(), fit, "pcs::score_tree()");
     score = internal::score_sample<ConcurrencyTag>(sample, fit, number, seed);
   }
   return score;

@@ -171,8 +171,8 @@ public:
         value.largest = p.restored(here - widening * (quantile(c, 0.025) - wanted)) + step;
         const std::size_t row = tropism_row(i);
         const double margin = row < 3 ? 1.96 * measured.tropism_error[row] : 0;
-        value.least = std::min(value.least, value.value - margin);
-        value.largest = std::max(value.largest, value.value + margin);
+        value.least = p.bounded(std::min(value.least, value.value - margin));
+        value.largest = p.bounded(std::max(value.largest, value.value + margin));
       }
       result.push_back(value);
     }

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
+#include <vector>
 
 namespace pcs {
 namespace generators {
@@ -47,15 +48,12 @@ void check_nodes(const Tree& tree, const std::string& where)
   }
 }
 
-/// Reads tree number `index`. Throws `Invalid_input` unless it has a trunk and four more branches.
+/// Reads a tree. Throws `Invalid_input`, with a message that begins with `where`, unless it has a
+/// trunk and four more branches.
 template <class Tree>
-Tree_sample checked_sample(const Tree& tree,
-                           double smallest_radius,
-                           const std::string& caller,
-                           std::size_t index)
+Tree_sample checked_sample(const Tree& tree, double smallest_radius, const std::string& where)
 {
   constexpr std::size_t fewest_axes = 5;
-  const std::string where = caller + ": tree " + std::to_string(index);
   check_nodes(tree, where);
   Tree_sample sample = read_sample(tree, smallest_radius);
   if (sample.axes.size() < fewest_axes) {
@@ -66,6 +64,14 @@ Tree_sample checked_sample(const Tree& tree,
                         std::to_string(fewest_axes - 1) + " branches");
   }
   return sample;
+}
+
+/// Returns the angle between z and the line from the base of the trunk to its tip. [rad]
+inline double trunk_tilt(const Tree_sample& sample)
+{
+  const std::vector<Vector3>& points = sample.axes.front().points;
+  const Vector3 line = points.back() - points.front();
+  return std::atan2(line.head<2>().norm(), line.z());
 }
 
 } // namespace habit

@@ -355,11 +355,15 @@ private:
   }
 
   /// Checks a number of nodes, or of branches that are not yet grown.
-  static void check_number(double number)
+  void check_number(double number) const
   {
+    using pcs::internal::to_text;
     if (!(number < static_cast<double>(largest_number_of_nodes)))
       throw Invalid_input("pcs::grow_tree(): the tree would have more than " +
-                          std::to_string(largest_number_of_nodes) + " nodes");
+                          std::to_string(largest_number_of_nodes) +
+                          " nodes: its trunk has the length " + to_text(m_habit.height) +
+                          ", and its branches are " + to_text(m_habit.spacing[0]) +
+                          " apart; use one unit for all lengths, or a smaller height");
   }
 
   void add_stubs(const Bud& trunk, std::size_t branch, const std::vector<Place>& places)
