@@ -387,6 +387,25 @@ BOOST_AUTO_TEST_CASE(opposite_branches_stay_opposite)
   report = build(mixed, a, opposite_tree(3, 1), true);
   BOOST_TEST(report.number_of_whorls[1] == 0u);
   BOOST_TEST(report.number_of_broken_whorls[0] > 5u);
+
+  // families are counted in the same way, for each tree
+  const auto family = [](const std::vector<Tree>& trees) {
+    Space built;
+    for (const Tree& tree : trees)
+      built.add_skeleton(tree);
+    return built.build();
+  };
+  const pcs::Orl_report kept = family({a, a, a});
+  BOOST_TEST_REQUIRE(kept.number_of_whorls.size() == 3u);
+  BOOST_TEST((kept.number_of_broken_whorls == std::vector<std::size_t>{0, 0, 0}));
+  for (const std::size_t number : kept.number_of_whorls)
+    BOOST_TEST(number > 20u);
+  const pcs::Orl_report separate = family({a, opposite_tree(3, 1), a});
+  BOOST_TEST(separate.number_of_whorls[1] == 0u);
+  BOOST_TEST(separate.number_of_whorls[0] == kept.number_of_whorls[0]);
+  BOOST_TEST(separate.number_of_broken_whorls[0] > 5u);
+  BOOST_TEST(separate.number_of_broken_whorls[1] == 0u);
+  BOOST_TEST(separate.number_of_broken_whorls[2] == separate.number_of_broken_whorls[0]);
 }
 
 BOOST_AUTO_TEST_CASE(the_status_tells_that_transports_did_not_converge)

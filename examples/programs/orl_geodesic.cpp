@@ -196,9 +196,9 @@ nlohmann::ordered_json report_json(const Space& space,
     if (is_pair) {
       json["number_of_branches"] = r.number_of_branches;
       json["number_of_matched_branches"] = r.number_of_matched_branches;
-      json["number_of_whorls"] = r.number_of_whorls;
-      json["number_of_broken_whorls"] = r.number_of_broken_whorls;
     }
+    json["number_of_whorls"] = r.number_of_whorls;
+    json["number_of_broken_whorls"] = r.number_of_broken_whorls;
     for (const Tree_file& file : files)
       json["number_of_points"].push_back(file.points.number_of_points());
     json["number_of_point_pairs"] = r.number_of_point_pairs;
@@ -213,15 +213,16 @@ nlohmann::ordered_json report_json(const Space& space,
   return json;
 }
 
-/// Says which arrangements of branches are not kept on the path.
+/// Says which arrangements of branches are not kept between trees.
 void warn_of_whorls(const Options& o, const pcs::Orl_report& r)
 {
-  for (std::size_t t = 0; t < 2 && !o.is_quiet; ++t)
+  for (std::size_t t = 0; t < r.number_of_broken_whorls.size() && !o.is_quiet; ++t)
     if (r.number_of_broken_whorls[t] > 0)
       std::cerr << "orl_geodesic: warning: " << r.number_of_broken_whorls[t] << " of "
                 << r.number_of_whorls[t] << " opposite pairs or whorls of branches of "
-                << (o.skeletons.empty() ? o.trees : o.skeletons)[t]
-                << " separate on the path, because their partners begin at different places\n";
+                << (o.skeletons.empty() ? o.trees : o.skeletons)[t] << " separate on the path"
+                << (r.number_of_trees > 2 ? " to other trees" : "")
+                << ", because their partners begin at different places\n";
 }
 
 /// Returns which tree is read from the skeleton file `i`.

@@ -176,6 +176,7 @@ set(shape_space_family
   embedding/mean_rotation.h
   input/tree_input.h
   matching/build_topology.h
+  matching/count_whorls.h
   matching/elastic_curves.h
   matching/find_yaw_candidates.h
   measures/Tree_descriptors.h

@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <ostream>
+#include <vector>
 
 namespace pcs {
 
@@ -28,12 +29,12 @@ struct Orl_report
   std::array<std::size_t, 2> number_of_nodes = {0, 0};    ///< of the trees [count]
   std::array<std::size_t, 2> number_of_branches = {0, 0}; ///< of the trees, as matched [count]
   std::size_t number_of_matched_branches = 0;             ///< pairs of branches [count]
-  //! two trees: opposite pairs and whorls of branches, below parents with at least four whorls of
-  //! the same size. Those of other parents are neither kept nor counted [count]
-  std::array<std::size_t, 2> number_of_whorls = {0, 0};
-  //! of these, whorls whose members separate on the path, because their partners are not in one
-  //! whorl of the other tree [count]
-  std::array<std::size_t, 2> number_of_broken_whorls = {0, 0};
+  //! of each tree: opposite pairs and whorls of branches, below parents with at least four whorls
+  //! of the same size. Those of other parents are neither kept nor counted [count]
+  std::vector<std::size_t> number_of_whorls = {0, 0};
+  //! of these, whorls whose members separate on the path to another tree, because their partners
+  //! are not in one whorl there [count]
+  std::vector<std::size_t> number_of_broken_whorls = {0, 0};
   std::size_t number_of_edges = 0; ///< of the common topology [count]
   double matching_energy = 0;      ///< of the branches, in units of the longest paths [-]
   //! two trees: 0 if the whole smaller tree has a counterpart in the other, 1 if no part has [-]

@@ -13,6 +13,7 @@
 #include <pcs/shape_space/family/Family_points_impl.h>
 #include <pcs/shape_space/family/make_family.h>
 #include <pcs/shape_space/family/star_correspondences.h>
+#include <pcs/shape_space/matching/count_whorls.h>
 #include <pcs/shape_space/matching/find_yaw_candidates.h>
 #include <pcs/shape_space/model/Build_options.h>
 #include <pcs/shape_space/model/Build_run.h>
@@ -137,7 +138,8 @@ bool match_scans(const std::vector<Tree_input>& inputs,
   return !run.progress.is_cancelled();
 }
 
-/// Counts branches and edges. Branches that are matched are counted for the first two trees only.
+/// Counts branches, edges and whorls. Branches that are matched are counted for the first two trees
+/// only.
 inline void describe_branches(const Tree_family& family, Orl_report& report)
 {
   for (std::size_t b = 0; b < family.layout.branches.size(); ++b) {
@@ -147,6 +149,9 @@ inline void describe_branches(const Tree_family& family, Orl_report& report)
   }
   report.number_of_common_branches = family.layout.branches.size();
   report.number_of_edges = family.layout.number_of_edges();
+  const Whorl_counts whorls = count_whorls(family);
+  report.number_of_whorls = whorls.number;
+  report.number_of_broken_whorls = whorls.broken;
 }
 
 } // namespace internal
