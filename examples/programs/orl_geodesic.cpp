@@ -235,7 +235,7 @@ Root_number root_number(const Options& o, std::size_t i)
   return {o.root_numbers[i], false};
 }
 
-/// Says why results have no normals although a file has some.
+/// Says why results do not have the normals of the scans although a file has some.
 void warn_of_normals(const Options& o, const std::vector<Tree_file>& files)
 {
   if (o.is_quiet || o.method.normals == "across")
@@ -243,9 +243,10 @@ void warn_of_normals(const Options& o, const std::vector<Tree_file>& files)
   for (std::size_t i = 0; i < files.size(); ++i)
     if (const std::size_t n = files[i].number_of_bad_normals; n > 0)
       std::cerr << "orl_geodesic: warning: " << o.trees[i] << ": " << n << " of "
-                << files[i].points.number_of_points()
-                << " normals are zero or not finite, so no normals are written; "
-                   "--normals across needs none\n";
+                << files[i].points.number_of_points() << " normals are zero or not finite, so "
+                << (o.method.normals == "scans"
+                        ? "no normals are written; --normals across needs none\n"
+                        : "the normals that are written are orthogonal to the branches\n");
 }
 
 /// Reads all files before skeletons are computed, which takes time.

@@ -276,6 +276,7 @@ BOOST_AUTO_TEST_CASE(trees_that_were_put_down_anew_are_turned_back_on_request)
   succeeds("--skeleton a_up.swc --skeleton b_up.swc --skeleton c_up.swc " + wanted + "still");
   succeeds(turned_skeletons + turned_trees + "--align yaw --up y --report r.json " + wanted +
            "back");
+  succeeds(turned_skeletons + turned_trees + "--align yaw --up -y " + wanted + "under");
   succeeds(turned_skeletons + wanted + "turned");
   const auto difference = [&](const std::string& one, const std::string& two) {
     orl_test::Tree a, b;
@@ -289,11 +290,15 @@ BOOST_AUTO_TEST_CASE(trees_that_were_put_down_anew_are_turned_back_on_request)
   };
   for (const std::string name : {"growth_0001.swc", "growth_0002.swc", "lambda_0.500.swc"}) {
     BOOST_TEST(difference("still/" + name, "back/" + name) < 1e-3 * length("a.swc"));
+    BOOST_TEST(difference("still/" + name, "under/" + name) < 1e-3 * length("a.swc"));
     BOOST_TEST(difference("still/" + name, "turned/" + name) > 0.01 * length("a.swc"));
   }
   for (const double n : pcs::IO::read_points(path("back/growth_0002.ply")).property_as_double("nx"))
     BOOST_TEST(n > 1 - 1e-6);
-  const Json turns = Json::parse(content("r.json"))["yaws_degrees"];
+  const Json family = Json::parse(content("r.json"));
+  BOOST_TEST(family["number_of_whorls"].size() == 3u);
+  BOOST_TEST(family["number_of_broken_whorls"].size() == 3u);
+  const Json turns = family["yaws_degrees"];
   BOOST_TEST_REQUIRE(turns.size() == 3u);
   BOOST_TEST(turns[0].get<double>() == 0);
   for (const std::size_t k : {1u, 2u}) // relative to the previous tree, which was rotated back

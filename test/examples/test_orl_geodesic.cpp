@@ -328,15 +328,37 @@ BOOST_AUTO_TEST_CASE(a_normal_that_is_zero_is_named)
   write_normals("a", pcs::npos);
   write_normals("b", pcs::npos);
   succeeds(trees + "--lambda 0.5 --output all");
-  BOOST_TEST(content("all/lambda_0.500.ply").find("nx") != std::string::npos);
+  const std::string of_scans = content("all/lambda_0.500.ply");
+  BOOST_TEST(of_scans.find("nx") != std::string::npos);
   BOOST_TEST(err == "");
-  write_normals("b", 7);
-  succeeds(trees + "--lambda 0.5 --output some");
-  BOOST_TEST(content("some/lambda_0.500.ply").find("nx") == std::string::npos);
-  BOOST_TEST(err.find("b.ply: 1 of 2000 normals are zero") != std::string::npos, err);
+  succeeds(trees + "--lambda 0.5 --normals scans --output all");
+  BOOST_TEST(content("all/lambda_0.500.ply") == of_scans);
   succeeds(trees + "--lambda 0.5 --normals across --output across");
-  BOOST_TEST(content("across/lambda_0.500.ply").find("nx") != std::string::npos);
+  const std::string across = content("across/lambda_0.500.ply");
+  BOOST_TEST(across.find("nx") != std::string::npos);
+  BOOST_TEST(across != of_scans);
+  write_normals("b", 7);
+  succeeds(trees + "--lambda 0.5 --normals scans --output none");
+  BOOST_TEST(content("none/lambda_0.500.ply").find("nx") == std::string::npos);
+  BOOST_TEST(err.find("b.ply: 1 of 2000 normals are zero") != std::string::npos, err);
+  BOOST_TEST(err.find("so no normals are written") != std::string::npos, err);
+  succeeds(trees + "--lambda 0.5 --output some");
+  BOOST_TEST(content("some/lambda_0.500.ply").find("nx") != std::string::npos);
+  BOOST_TEST(err.find("are orthogonal to the branches") != std::string::npos, err);
+  succeeds(trees + "--lambda 0.5 --normals across --output across");
+  BOOST_TEST(content("some/lambda_0.500.ply") == content("across/lambda_0.500.ply"));
   BOOST_TEST(err == "");
+}
+
+BOOST_AUTO_TEST_CASE(scans_without_normals_give_normals)
+{
+  const auto text = [&](const std::string& name) { return content(name + "/lambda_0.500.ply"); };
+  succeeds(trees + "--lambda 0.5 --output all");
+  succeeds(trees + "--lambda 0.5 --normals across --output across");
+  succeeds(trees + "--lambda 0.5 --normals scans --output none");
+  BOOST_TEST(text("all").find("nx") != std::string::npos);
+  BOOST_TEST(text("all") == text("across"));
+  BOOST_TEST(text("none").find("nx") == std::string::npos);
 }
 
 BOOST_AUTO_TEST_CASE(stored_matches_keep_their_confidence)
@@ -358,7 +380,7 @@ BOOST_AUTO_TEST_CASE(options_change_the_result)
                                    "--transport-cost distance",
                                    "--reach inf",
                                    "--point-path virtual-edges",
-                                   "--normals across"}) {
+                                   "--normals scans"}) {
     succeeds(trees + "--lambda 0.5 --output other " + option);
     BOOST_TEST(content("other/lambda_0.500.ply") != plain, option);
   }

@@ -28,7 +28,7 @@ struct Method_options
   // coordinates and the metric
   std::string orientation = "gauge-fixed", direction = "of-partner", metric = "sum";
   // trees on the path
-  std::string extrapolation = "bounded", point_path = "cylindrical", normals = "scans";
+  std::string extrapolation = "bounded", point_path = "cylindrical", normals = "scans-or-across";
 };
 
 inline void add_choice(CLI::App& app,
@@ -115,9 +115,9 @@ inline void declare_method(CLI::App& app, Method_options& m)
   add_choice(app,
              "--normals",
              m.normals,
-             {"scans", "across"},
-             "normals of points: of the scans, if all have them; or orthogonal to the branches "
-             "[across]");
+             {"scans-or-across", "scans", "across"},
+             "normals of points: of the scans, if all have them, otherwise orthogonal to the "
+             "branches; of the scans or none; or orthogonal in any case [across]");
 }
 
 inline pcs::Point_assignment_options assignment_options(const Method_options& m)

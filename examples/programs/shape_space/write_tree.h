@@ -66,7 +66,8 @@ inline void write_scan(const Space& space,
   const std::size_t n = tree.number_of_points();
   std::vector<Table::Point_3> points(n);
   std::vector<Table::Vector_3> normals;
-  const bool are_across = method.normals == "across";
+  const bool are_across =
+      method.normals == "across" || (method.normals == "scans-or-across" && !space.has_normals());
   const auto form = np::point_path(point_path(method));
   if (space.has_normals() || are_across) {
     normals.resize(n);
