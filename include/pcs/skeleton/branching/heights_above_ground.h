@@ -38,7 +38,7 @@ heights_above_ground(const Scan& scan, const Axis_set& set, const Ground& ground
     const double distance = (d - ground.up.dot(d) * ground.up).norm();
     if (distance <= apart * foot.width + 4 * scan.spacing)
       return infinity;
-    return std::max(0.0, ground.terrain->height(end.point) - ground.thickness - end.radius);
+    return std::max(0.0, ground.height(end.point) - end.radius);
   };
   End_heights heights;
   for (const Fitted_axis& fitted : set.axes)

@@ -23,17 +23,18 @@ namespace skeleton {
 /// Criteria for an object beside a tree.
 struct Object_options
 {
-  bool do_remove = true; ///< whether objects are removed
-  double standing = 3;   ///< largest height of its lowest point, in spacings [-]
-  double low = 0.5;      ///< largest height of an object / height of all points [-]
-  double gap = 0.1;      ///< least distance from the tree / height of the object [-] ...
-  double spacings = 10;  ///< ... but at least this many spacings [-]
+  bool do_remove = true;   ///< whether objects are removed
+  std::size_t fewest = 30; ///< least number of its points; fewer do no harm [count]
+  double standing = 3;     ///< largest height of its lowest point, in spacings [-]
+  double low = 0.5;        ///< largest height of an object / height of all points [-]
+  double gap = 0.1;        ///< least distance from the tree / height of the object [-] ...
+  double spacings = 10;    ///< ... but at least this many spacings [-]
 };
 
 /*!
   Returns the points of separate objects that stand on the ground, such as posts, fences, rocks,
   vehicles and shrubs: a tree touches the ground at its foot only. An object is a connected
-  component of the used points with
+  component of at least `fewest` used points with
 
   - a point at most `standing` spacings above the ground,
   - no point of `is_stem`,
@@ -70,7 +71,8 @@ inline std::vector<Index> find_objects(const Scan& scan,
   for (Index i = 0; i < n; ++i)
     if (is_used[i]) {
       const Index part = parts.part[i];
-      is_kept[part] |= low[part] > 0 || high[part] > rules.low * top;
+      is_kept[part] |=
+          parts.size[part] < rules.fewest || low[part] > 0 || high[part] > rules.low * top;
       if (is_kept[part])
         tree.push_back(scan.points[i]);
       else

@@ -49,7 +49,8 @@ struct Ground_options
   double beside = 1.5;  ///< radius within which ground is thinner, in stem widths [-] ...
   double foot = 2;      ///< ... and its thickness there, in multiples of the noise [-]
   double thickest = std::numeric_limits<double>::infinity(); ///< ground, in units of the input [L]
-  double filled = 0.4; ///< least fraction of filled cells in a bin of plants [-]
+  double uneven = 0.02; ///< thickness of ground without points / vertical extent [-]
+  double filled = 0.4;  ///< least fraction of filled cells in a bin of plants [-]
   Terrain_options terrain;
   Sheet_options sheet;
   Object_options objects;
@@ -125,6 +126,8 @@ public:
       terrain = find_terrain(scan, up, rules.terrain, leave_out_strays(scan, is_used));
     if (terrain)
       find_on(*terrain);
+    if (m_points.empty() && m_rules.objects.do_remove)
+      find_objects_without_ground();
   }
 
   const std::vector<Index>& points() const { return m_points; }
@@ -228,7 +231,7 @@ private:
     const Low_bins bins(m_scan, height, m_rules.stem, is_standing);
     const auto foot =
         find_foot(m_scan,
-                  stem_in_bins(m_scan, m_links, height, is_standing, bins, m_rules.stem),
+                  stem_in_bins(m_scan, m_links, height, is_standing, bins, m_rules.stem).bins,
                   m_up);
     if (!foot) { // such as a lying stem
       const auto standing = std::count(is_standing.begin(), is_standing.end(), 1);
@@ -256,6 +259,27 @@ private:
     m_ground.terrain = std::move(terrain);
     m_ground.thickness = thickness;
     m_ground.up = m_up;
+  }
+
+  /// Finds objects at the level of the foot if the stem is linked down to the lowest points. The
+  /// ground, which was removed before, or not scanned, need not be quite level.
+  void find_objects_without_ground()
+  {
+    std::vector<double> height(m_scan.size());
+    for (Index i = 0; i < m_scan.size(); ++i)
+      height[i] = m_up.dot(m_scan.points[i]);
+    const Low_bins bins(m_scan, height, m_rules.stem, m_is_used);
+    const Stem_in_bins stem = stem_in_bins(m_scan, m_links, height, m_is_used, bins, m_rules.stem);
+    const auto foot = stem.is_linked ? find_foot(m_scan, stem.bins, m_up) : std::nullopt;
+    if (!foot)
+      return;
+    m_ground.foot = foot;
+    m_ground.level = bins.low;
+    m_ground.thickness = m_rules.uneven * (bins.high - bins.low);
+    m_ground.up = m_up;
+    for (double& h : height)
+      h -= bins.low + m_ground.thickness;
+    find_objects_beside(*foot, height);
   }
 
   /// Finds objects among the points above the ground. `height`: of each point [L].

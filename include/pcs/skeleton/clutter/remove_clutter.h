@@ -93,7 +93,7 @@ public:
   {
     m_report.number_of_ground_points = m_ground.number_of_points;
     m_report.number_of_object_points = m_ground.number_of_object_points;
-    const bool has_ground = m_ground.number_of_points > 0;
+    const bool has_ground = m_ground.number_of_points + m_ground.number_of_object_points > 0;
     if (has_ground) {
       m_labels.keep_only(std::move(m_is_above_ground));
       links = find_links();
@@ -105,7 +105,7 @@ public:
   /// Returns the removed ground.
   const Ground& ground() const { return m_ground; }
   /// Returns the foot of the tree on the removed ground; no value without ground.
-  const std::optional<Stem_foot>& foot() const { return m_ground.foot; }
+  std::optional<Stem_foot> foot() const { return m_ground.terrain ? m_ground.foot : std::nullopt; }
 
 private:
   const Clutter_options& m_options;

@@ -119,17 +119,24 @@ Index carrier_of_crown(const Scan& scan,
   return best;
 }
 
+/// The points of the stem in each bin.
+struct Stem_in_bins
+{
+  std::vector<std::vector<Index>> bins;
+  bool is_linked = false; ///< whether they are linked from the crown to the lowest bin
+};
+
 /// Returns the points of the stem in each bin. The stem is tracked downwards from the dominant
 /// component above the bins, by its number of points times its squared height, through the
 /// connected components with the most links to the part above; below a gap, through the largest
 /// component. If several components of the highest bin carry the component above, such as a stem
 /// and a wall that the crown touches, the paths from the crown decide.
-inline std::vector<std::vector<Index>> stem_in_bins(const Scan& scan,
-                                                    const Compact_links& links,
-                                                    const std::vector<double>& height_of,
-                                                    const std::vector<std::uint8_t>& is_used,
-                                                    const Low_bins& bins,
-                                                    const Stem_bin_options& rules)
+inline Stem_in_bins stem_in_bins(const Scan& scan,
+                                 const Compact_links& links,
+                                 const std::vector<double>& height_of,
+                                 const std::vector<std::uint8_t>& is_used,
+                                 const Low_bins& bins,
+                                 const Stem_bin_options& rules)
 {
   const Index n = static_cast<Index>(scan.size());
   const std::size_t count = bins.members.size();
@@ -162,7 +169,7 @@ inline std::vector<std::vector<Index>> stem_in_bins(const Scan& scan,
     if (is_used[i] && bins.bin[i] == none &&
         (tallest == none || score(above.find(i)) > score(tallest)))
       tallest = above.find(i);
-  std::vector<std::vector<Index>> stem(count);
+  Stem_in_bins stem{std::vector<std::vector<Index>>(count), true};
   std::vector<std::uint8_t> is_stem(n, 0);
   std::vector<Index> contact(n, 0); // links of components with the stem above
   bool is_found = false;            // whether a bin has contact with the stem above
@@ -202,9 +209,10 @@ inline std::vector<std::vector<Index>> stem_in_bins(const Scan& scan,
                                       : none;
       part = carrier != none ? carrier : part;
     }
+    stem.is_linked = stem.is_linked && part != none && contact[part] > 0;
     for (const Index i : bins.members[b])
       if (sets.find(i) == part) {
-        stem[b].push_back(i);
+        stem.bins[b].push_back(i);
         is_stem[i] = 1;
       }
   }

@@ -52,9 +52,9 @@ void keep_blades_of_plant(Session_state<Tag>& s)
   const Point_parts blades = connected_parts<Tag>(is_blade, links);
   std::map<Index, Moments> feet; // the points near the ground, by blade
   const Ground& ground = s.clutter.ground();
-  if (ground.terrain)
+  if (ground.foot)
     for (const Index i : points)
-      if (ground.terrain->height(s.scan.points[i]) <= s.blades.radius)
+      if (ground.height(s.scan.points[i]) <= s.blades.radius)
         feet[blades.part[i]].add(s.scan.points[i]);
   const auto is_standing = [&](Index i) {
     const auto foot = feet.find(blades.part[i]);
