@@ -45,6 +45,8 @@ struct Segmented_tree
   double diameter_at_breast_height = 0; ///< of that stem; 0 if its axis ends below [L]
   std::size_t number_of_points = 0;     ///< [count]
   double height = 0;                    ///< of its highest point above the foot [L]
+  //! height of the foot above the ground below it; 0 if that ground is not known [L]
+  double foot_above_ground = 0;
 };
 
 //! \ingroup PkgPcsSkeletonRef
@@ -91,6 +93,7 @@ void warn_of_trees(const Segmentation_report& r,
 inline std::vector<std::string> warnings(const Segmentation_report& r)
 {
   constexpr double max_diameter = 0.1; // stem diameter / height; trees: 0.01 to 0.05 [-]
+  constexpr double max_foot = 0.1; // height of the foot above the ground / height of the tree [-]
   // a tree without its top: height and radius, in medians of a stand of at least this many trees
   constexpr double cut_height = 0.6, full_radius = 0.8;
   constexpr std::size_t min_trees = 4;
@@ -111,6 +114,12 @@ inline std::vector<std::string> warnings(const Segmentation_report& r)
                std::max(2 * t.radius, t.diameter_at_breast_height) > max_diameter * t.height;
       },
       "with a stem too thick for the height, perhaps several stems or ground in one",
+      sentences);
+  internal::warn_of_trees(
+      r,
+      [&](const Segmented_tree& t) { return t.foot_above_ground > max_foot * t.height; },
+      "with a foot far above the ground; the lower stem may be missing or too sparse, so foot, "
+      "diameter and height are wrong",
       sentences);
   if (r.trees.size() >= min_trees) {
     std::vector<double> heights, radii, ratios;
@@ -156,9 +165,11 @@ void write_trees(const skeleton::Stand& stand,
                  PointTreeMap point_tree_map,
                  Segmentation_report& report)
 {
-  for (const skeleton::Detected_tree& tree : stand.trees)
+  for (const skeleton::Detected_tree& tree : stand.trees) {
     report.trees.push_back(
         {{tree.foot.x(), tree.foot.y(), tree.foot.z()}, tree.radius, 2 * tree.radius_at_breast});
+    report.trees.back().foot_above_ground = tree.above_ground;
+  }
   report.number_of_low_plants = stand.number_of_low_plants;
   std::size_t i = 0;
   for (auto it = std::begin(points); it != std::end(points); ++it, ++i) {

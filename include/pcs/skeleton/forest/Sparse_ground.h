@@ -191,7 +191,7 @@ private:
     return std::max(pcs::internal::lower_median(residuals), 1e-9 * m_cell);
   }
 
-  const Sparse_ground_options& m_rules;
+  Sparse_ground_options m_rules;
   double m_cell; ///< side of the squares [L]
   double m_thickness = 0;
   bool m_is_fitted = false;

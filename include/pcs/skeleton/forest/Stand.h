@@ -21,6 +21,7 @@ struct Detected_tree
   Vec3 foot = Vec3::Zero();    ///< lower end of the axis of its thickest stem
   double radius = 0;           ///< largest radius in the lowest part of this stem [L]
   double radius_at_breast = 0; ///< its radius at breast height; 0 if its axis ends below [L]
+  double above_ground = 0;     ///< of the foot above the ground below; 0 if that is not known [L]
 };
 
 /// Returns the input points, the same at each call.

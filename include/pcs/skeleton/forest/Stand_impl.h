@@ -23,6 +23,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -55,6 +56,7 @@ struct Stand_state
 struct Ground_view
 {
   std::vector<std::uint8_t> is_above, may_be_ground;
+  std::optional<Sparse_ground> ground; ///< its surface, if enough of it is seen
 };
 
 /*!
@@ -67,7 +69,7 @@ Ground_view view_ground(const Session<ConcurrencyTag>& session, double breast_he
 {
   const Scan& scan = session.scan();
   const std::vector<std::uint8_t> all(scan.size(), 1);
-  Ground_view view{session.used_points(), all};
+  Ground_view view{session.used_points(), all, std::nullopt};
   const bool has_ground = session.report().number_of_ground_points > 0;
   const std::vector<std::uint8_t>& is_used = has_ground ? all : view.is_above;
   const Sparse_ground_options rules;
@@ -87,7 +89,10 @@ Ground_view view_ground(const Session<ConcurrencyTag>& session, double breast_he
   if (has_strays)
     view.may_be_ground = leave_out_strays<ConcurrencyTag>(scan, all);
   const Sparse_ground& ground = has_strays ? without_strays : of_all;
-  if (has_ground || !ground.is_found())
+  if (!ground.is_found())
+    return view;
+  view.ground = ground;
+  if (has_ground)
     return view;
   for (std::size_t i = 0; i < scan.size(); ++i)
     if (ground.height(scan.points[i]) <= ground.thickness())
@@ -152,6 +157,9 @@ bool find_stand(const Read_input& read_input,
   if (!finder.find(progress))
     return false;
   stand.stems = finder.stems();
+  for (Found_stem& stem : stand.stems)
+    if (view.ground)
+      stem.above_ground = view.ground->height(stem.foot);
   if (!are_wanted(stand, finder.stem_of_point()))
     return progress(1);
   if (!finder.label(progress, [&] { session.release_neighbors(); }))
@@ -161,15 +169,15 @@ bool find_stand(const Read_input& read_input,
   return true;
 }
 
-/// Returns which stems of `coarse` are sparsely sampled in `stand`. `stem_of_point` is that of the
-/// points of `coarse`. O(points).
+/// Returns which stems of `coarse` are sparsely sampled in `stand`: all if it has no stem.
+/// `stem_of_point` is that of the points of `coarse`. O(points).
 inline std::vector<bool> sparse_stems(const Stand_state& coarse,
                                       const std::vector<Index>& stem_of_point,
                                       const Stand_options& rules,
                                       const Stand_state& stand)
 {
-  std::vector<bool> result(coarse.stems.size(), false);
-  if (coarse.stems.empty() || stand.spacing_of_point.empty())
+  std::vector<bool> result(coarse.stems.size(), stand.stems.empty());
+  if (stand.stems.empty() || coarse.stems.empty() || stand.spacing_of_point.empty())
     return result;
   std::vector<std::vector<float>> spacings(coarse.stems.size());
   for (std::size_t i = 0; i < coarse.point_of_input.size(); ++i) {
@@ -209,6 +217,7 @@ inline std::vector<Index> add_sparse_trees(const Stand_state& coarse,
     stem.radius *= coarse.frame.unit / stand.frame.unit;
     stem.radius_at_breast *= coarse.frame.unit / stand.frame.unit;
     stem.height *= coarse.frame.unit / stand.frame.unit;
+    stem.above_ground *= coarse.frame.unit / stand.frame.unit;
     const auto own = std::find_if(stand.stems.begin(), stand.stems.end(), [&](const Found_stem& o) {
       const bool is_thicker = o.radius >= stem.radius;
       return are_of_one_tree(is_thicker ? stem : o,
@@ -314,7 +323,8 @@ bool find_trees(const Read_input& read_input,
     place[stem.tree] = static_cast<Index>(result.trees.size());
     result.trees.push_back({stand.frame.to_input(stem.foot),
                             stand.frame.unit * stem.radius,
-                            stand.frame.unit * stem.radius_at_breast});
+                            stand.frame.unit * stem.radius_at_breast,
+                            stand.frame.unit * stem.above_ground});
   }
   for (Index& tree : tree_of_input)
     tree = tree == none ? none : place[tree];

@@ -28,10 +28,11 @@ struct Stand_options
   double stool_radii = 3;      ///< stems of one tree lie within this many radii of the thicker one,
   double stool = 0.1;          ///< ... plus this length,
   double lean = 1;             ///< ... plus this multiple of the height of the foot [-]
-  double root = 0.5;           ///< height of the lowest part of a stem, where its paths begin
-  double base_radii = 1.25;    ///< ground points this near to a foot belong to it, in radii [-]
-  double coarser = 3;  ///< voxel size of the search for sparsely sampled stems, in `cell` [-]
-  double sparse = 1.6; ///< least relative spacing of sparse points [-]
+  double hidden = 0.2;      ///< a stem continues if its axis ends this far above its lowest points
+  double root = 0.5;        ///< height of the lowest part of a stem, where its paths begin
+  double base_radii = 1.25; ///< ground points this near to a foot belong to it, in radii [-]
+  double coarser = 3;       ///< voxel size of the search for sparsely sampled stems, in `cell` [-]
+  double sparse = 1.6;      ///< least relative spacing of sparse points [-]
 };
 
 } // namespace skeleton

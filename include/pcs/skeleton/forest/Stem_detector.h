@@ -11,6 +11,7 @@
 #include <pcs/skeleton/Session_options.h>
 #include <pcs/skeleton/axes/fit_axes.h>
 #include <pcs/skeleton/branching/build_branch_tree.h>
+#include <pcs/skeleton/forest/Found_stem.h>
 #include <pcs/skeleton/forest/Stand_options.h>
 #include <pcs/skeleton/graph/Neighbor_graph.h>
 #include <pcs/skeleton/graph/shortest_paths.h>
@@ -87,28 +88,6 @@ void inherit(std::vector<Index>& labels, const Parent& parent)
     for (const Index j : way)
       labels[j] = at == none ? none : labels[at];
   }
-}
-
-/// A stem in a scan, and its tree.
-struct Found_stem
-{
-  Index axis, tree;
-  Vec3 foot;
-  double radius;           ///< largest radius in the lowest part
-  double radius_at_breast; ///< radius at breast height; 0 if the axis ends below it
-  double height;           ///< of the foot above the ground
-};
-
-/// Returns whether a stem belongs to the tree of a stem of at least its radius. z points upwards.
-inline bool are_of_one_tree(const Found_stem& stem,
-                            const Found_stem& thicker,
-                            double breast_height,
-                            const Stand_options& rules)
-{
-  const Vec3 d = stem.foot - thicker.foot;
-  return std::hypot(d.x(), d.y()) < rules.stool_radii * thicker.radius +
-                                        rules.stool * breast_height +
-                                        rules.lean * std::max({0.0, stem.height, thicker.height});
 }
 
 /*!
@@ -251,13 +230,9 @@ private:
     for (Index a = 0; a < m_axes.axes.size(); ++a) {
       const Axis_node* const foot = foot_of(m_axes.axes[a].axis, ground);
       if (foot != nullptr)
-        found.push_back({a,
-                         none,
-                         foot->point,
-                         radius_near(m_axes.axes[a].axis, foot->point),
-                         radius_at_breast(m_axes.axes[a].axis, foot->point),
-                         ground.height(foot->point)});
+        found.push_back(stem_of(a, foot->point, ground));
     }
+    continue_down(ground, found);
     std::stable_sort(found.begin(), found.end(), [](const Found_stem& a, const Found_stem& b) {
       return a.radius > b.radius;
     });
@@ -274,6 +249,91 @@ private:
       return a.tree < b.tree;
     });
     m_stems = std::move(found);
+  }
+
+  Found_stem stem_of(Index a, const Vec3& foot, const Lowest_ground& ground) const
+  {
+    const Axis& axis = m_axes.axes[a].axis;
+    return {a,
+            none,
+            foot,
+            radius_near(axis, foot, m_rules.root * m_breast_height),
+            radius_at_breast(axis, foot, m_breast_height),
+            ground.height(foot)};
+  }
+
+  /// Marks the points that may lie on a stem or below it. Empty if none is far below a foot, as in
+  /// most scans, so that no links need to be listed.
+  std::vector<std::uint8_t> points_below(const std::vector<Found_stem>& stems) const
+  {
+    if (stems.empty())
+      return {};
+    std::vector<Vec3> feet;
+    double widest = 0;
+    for (const Found_stem& stem : stems) {
+      feet.emplace_back(stem.foot.x(), stem.foot.y(), 0);
+      widest = std::max(widest, reach_below(stem, m_breast_height, m_rules));
+    }
+    const neighborhood::Nearest_neighbors search(feet);
+    std::vector<std::uint8_t> is_below(m_scan.size(), 0), is_far(m_scan.size(), 0);
+    pcs::internal::for_each_index<ConcurrencyTag>(
+        m_scan.size(),
+        [&](std::size_t i) {
+          if (!m_is_used[i])
+            return;
+          const Vec3& p = m_scan.points[i];
+          std::vector<Index> near;
+          search.within(Vec3(p.x(), p.y(), 0), widest, near);
+          for (const Index s : near)
+            if (may_continue(stems[s], p, m_breast_height, m_rules)) {
+              is_below[i] = 1;
+              is_far[i] = is_far[i] || stems[s].foot.z() - p.z() > m_rules.hidden * m_breast_height;
+            }
+        },
+        4096);
+    if (std::find(is_far.begin(), is_far.end(), 1) == is_far.end())
+      is_below.clear();
+    return is_below;
+  }
+
+  /// Moves stems that begin above the ground to the axes below them.
+  void continue_down(const Lowest_ground& ground, std::vector<Found_stem>& stems) const
+  {
+    const std::vector<std::uint8_t> is_below = points_below(stems);
+    if (is_below.empty())
+      return;
+    std::map<Index, std::vector<Index>> points; // by axis of a stem
+    for (const Found_stem& stem : stems)
+      points[stem.axis];
+    for (Index i = 0; i < m_scan.size(); ++i)
+      if (is_below[i] && m_axes.is_covered(i)) {
+        const auto own = points.find(m_axes.axis_of_point[i]);
+        if (own != points.end())
+          own->second.push_back(i);
+      }
+    Links links;
+    for_each_link(*m_links, [&](const Link& link) {
+      if (is_below[link.first] && is_below[link.second])
+        links.push_back(link);
+    });
+    const Neighbor_graph graph = graph_of(m_scan.size(), links);
+    const Stem_continuation continuation(m_scan, graph, m_axes, m_breast_height, m_rules);
+    std::vector<Found_stem> lowest;
+    for (const Found_stem& stem : stems) {
+      const Index a = continuation.lowest_axis(stem, points[stem.axis]);
+      const Axis& axis = m_axes.axes[a].axis;
+      const Vec3& foot =
+          (axis.front().point.z() <= axis.back().point.z() ? axis.front() : axis.back()).point;
+      const double least = m_rules.hidden * m_breast_height;
+      const bool is_lower = a != stem.axis && stem.foot.z() - foot.z() > least &&
+                            stem.height - ground.height(foot) > least; // also on a slope
+      const Found_stem moved = is_lower ? stem_of(a, foot, ground) : stem;
+      if (std::none_of(lowest.begin(), lowest.end(), [&](const Found_stem& other) {
+            return other.axis == moved.axis;
+          }))
+        lowest.push_back(moved);
+    }
+    stems = std::move(lowest);
   }
 
   /// Returns the end from which an axis rises like a stem, or null. Nodes beyond the highest one
@@ -308,28 +368,6 @@ private:
       }
     }
     return foot;
-  }
-
-  /// Returns the largest radius in the lowest part of a stem.
-  double radius_near(const Axis& axis, const Vec3& foot) const
-  {
-    double radius = 0;
-    for (const Axis_node& node : axis)
-      if (node.point.z() <= foot.z() + m_rules.root * m_breast_height)
-        radius = std::max(radius, node.radius);
-    return radius;
-  }
-
-  /// Returns the radius at breast height above the foot, or 0 if the axis ends below.
-  double radius_at_breast(const Axis& axis, const Vec3& foot) const
-  {
-    const double height = foot.z() + m_breast_height;
-    for (std::size_t k = 1; k < axis.size(); ++k) {
-      const double a = axis[k - 1].point.z(), b = axis[k].point.z();
-      if (std::min(a, b) <= height && height < std::max(a, b))
-        return axis[k - 1].radius + (axis[k].radius - axis[k - 1].radius) * (height - a) / (b - a);
-    }
-    return 0;
   }
 
   /// Returns the points in the lowest part of all stems, and assigns them to their stems.
