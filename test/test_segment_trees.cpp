@@ -220,6 +220,30 @@ BOOST_AUTO_TEST_CASE(implausible_trees_are_named)
   BOOST_TEST(sentences[1].find("number 1") != std::string::npos);
   report.trees[0].diameter_at_breast_height = 1.8; // of a tree of 15 m
   BOOST_TEST(pcs::warnings(report)[1].find("number 0, 1") != std::string::npos);
+  const auto reasons = pcs::warnings_of_trees(report);
+  BOOST_TEST_REQUIRE(reasons.size() == 3u);
+  for (std::size_t t = 0; t < 3; ++t) {
+    BOOST_TEST_REQUIRE(reasons[t].size() == 1u);
+    BOOST_TEST((reasons[t][0].find("too thick") != std::string::npos) == (t < 2));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(feet_far_above_the_ground_are_named)
+{
+  pcs::Segmentation_report report;
+  report.breast_height = 1.3;
+  report.trees.resize(2);
+  for (pcs::Segmented_tree& tree : report.trees) {
+    tree.radius = 0.1;
+    tree.height = 10;
+    tree.foot_above_ground = 0.3;
+  }
+  BOOST_TEST(pcs::warnings(report).empty());
+  report.trees[1].foot_above_ground = 1.5;
+  const std::vector<std::string> sentences = pcs::warnings(report);
+  BOOST_TEST_REQUIRE(sentences.size() == 1u);
+  BOOST_TEST(sentences[0].find("1 tree(s) with a foot far above the ground") == 0u);
+  BOOST_TEST(sentences[0].find("number 1") != std::string::npos);
 }
 
 BOOST_AUTO_TEST_CASE(trees_thicker_than_others_of_the_same_height_are_named)

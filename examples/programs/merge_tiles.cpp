@@ -69,7 +69,8 @@ height, points, tile, parts (tiles whose cores have points of it), is_at_rim (it
 rim of the buffer of its tile), cut_parts (other tiles where it does), file, crown_area (of the
 convex hull, in the plan, of the points at least --crown-base above the foot), crown_volume (sum of
 the areas of the convex hulls of layers, times their height: 0.5 / 1.3 of the breast height, that is
-half a metre).
+half a metre), warnings (of segment_trees about this tree, as in the report and in the outlines of
+the crowns).
 Crowns: the convex hulls in the plan (GeoJSON polygons in the coordinates of the scan). There are no
 standard errors of crowns: how far single points lie outside a crown is not known.
 Points: all points of the plot in the order of `index`, with the property `tree` (-1: none). If the
@@ -310,6 +311,28 @@ std::string list(const std::vector<std::string>& items)
   return text + (items.size() > most ? ", ..." : "");
 }
 
+/// Returns the warnings of the segmentation about a tree of the plot.
+std::string warnings_of_tree(const Merged_plot& plot, std::size_t tree)
+{
+  const Plot_tree& own = plot.trees->trees()[tree];
+  std::string text;
+  for (const std::string& warning :
+       plot.tiles.results()[own.tile]->trees[own.tree_of_tile].warnings)
+    text += (text.empty() ? "" : "; ") + warning;
+  return text;
+}
+
+/// Returns a text as a field of a CSV file.
+std::string quoted(const std::string& text)
+{
+  if (text.find_first_of(",\"\r\n") == std::string::npos)
+    return text;
+  std::string field = "\"";
+  for (const char c : text)
+    field += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return field + "\"";
+}
+
 /// Returns whether a tree gets a file.
 bool has_file(const Options& options, std::uint64_t number_of_points)
 {
@@ -372,6 +395,15 @@ all_warnings(const Tile_manifest& manifest, const Options& options, const Merged
                        " tree(s) are found in the buffer of a tile, but not by the tile whose core "
                        "has the foot; there, the tree is missing or part of another: " +
                        list(items) + "; look at them");
+  std::map<std::string, std::vector<std::string>> doubtful; // trees by reason
+  for (std::size_t p = 0; p < plot.points.size(); ++p) {
+    const std::string reason = warnings_of_tree(plot, p);
+    if (!reason.empty())
+      doubtful[reason].push_back(std::to_string(p));
+  }
+  for (const auto& [reason, trees] : doubtful)
+    warnings.push_back(std::to_string(trees.size()) + " tree(s) " + reason + ": number " +
+                       list(trees));
   if (!plot.trees_without_crown.empty())
     warnings.push_back(
         std::to_string(plot.trees_without_crown.size()) + " tree(s) have points more than " +
@@ -402,7 +434,7 @@ all_warnings(const Tile_manifest& manifest, const Options& options, const Merged
 std::string table_of(const Tile_manifest& manifest, const Options& options, const Merged_plot& plot)
 {
   std::string text = "tree,x,y,z,radius,diameter_at_breast_height,height,points,tile,parts,"
-                     "is_at_rim,cut_parts,file,crown_area,crown_volume\n";
+                     "is_at_rim,cut_parts,file,crown_area,crown_volume,warnings\n";
   for (std::size_t p = 0; p < plot.points.size(); ++p) {
     const Plot_tree& tree = plot.trees->trees()[p];
     text += std::to_string(p);
@@ -413,7 +445,8 @@ std::string table_of(const Tile_manifest& manifest, const Options& options, cons
             manifest.tiles()[tree.tile].file + "," + std::to_string(tree.number_of_parts) + "," +
             (tree.is_at_rim ? "1" : "0") + "," + std::to_string(tree.number_of_cut_parts) + "," +
             (has_file(options, plot.points[p]) ? Tree_files::name_of(p) : "") + "," +
-            number(plot.crowns[p].area) + "," + number(plot.crowns[p].volume) + "\n";
+            number(plot.crowns[p].area) + "," + number(plot.crowns[p].volume) + "," +
+            quoted(warnings_of_tree(plot, p)) + "\n";
   }
   return text;
 }
@@ -452,6 +485,15 @@ Ordered_json to_json(const Tile_manifest& manifest, const Options& options, cons
           {"joined_trees", joined},
           {"close_feet", plot.trees->twins()},
           {"warnings", all_warnings(manifest, options, plot)}};
+}
+
+/// Returns the outlines of the crowns, with the warnings of the trees.
+Ordered_json outlines_of(const Merged_plot& plot)
+{
+  Ordered_json json = to_json(plot.crowns);
+  for (std::size_t p = 0; p < plot.crowns.size(); ++p)
+    json["features"][p]["properties"]["warnings"] = warnings_of_tree(plot, p);
+  return json;
 }
 
 /// Writes all points in the order of their indices.
@@ -525,7 +567,7 @@ bool run(const Options& options)
   if (table)
     table->commit(table_of(manifest, options, plot));
   if (crowns)
-    crowns->commit(to_json(plot.crowns));
+    crowns->commit(outlines_of(plot));
   json["seconds"] = watch.lap();
   if (report)
     report->commit(json);

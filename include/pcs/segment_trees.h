@@ -68,29 +68,15 @@ struct Segmentation_report
 
 namespace internal {
 
-/// Adds a sentence about the trees for which `is_doubtful(tree)` holds, with the first few indices.
-template <class IsDoubtful>
-void warn_of_trees(const Segmentation_report& r,
-                   const IsDoubtful& is_doubtful,
-                   const std::string& what,
-                   std::vector<std::string>& sentences)
+/// A reason to doubt trees, and the indices of these trees.
+struct Tree_doubt
 {
-  constexpr std::size_t max_listed = 8;
-  std::size_t count = 0;
-  std::string list;
-  for (std::size_t t = 0; t < r.trees.size(); ++t)
-    if (is_doubtful(r.trees[t]) && ++count <= max_listed)
-      list += (list.empty() ? "" : ", ") + std::to_string(t);
-  if (count > 0)
-    sentences.push_back(std::to_string(count) + " tree(s) " + what + ": number " + list +
-                        (count > max_listed ? ", ..." : ""));
-}
+  std::string what;
+  std::vector<std::size_t> trees;
+};
 
-} // namespace internal
-
-//! \ingroup PkgPcsSkeletonRef
-//! returns one sentence for each reason to doubt the segmentation; empty for most stands
-inline std::vector<std::string> warnings(const Segmentation_report& r)
+/// Returns the reasons to doubt trees, with at least one tree each.
+inline std::vector<Tree_doubt> doubts_of_trees(const Segmentation_report& r)
 {
   constexpr double max_diameter = 0.1; // stem diameter / height; trees: 0.01 to 0.05 [-]
   constexpr double max_foot = 0.1; // height of the foot above the ground / height of the tree [-]
@@ -100,58 +86,83 @@ inline std::vector<std::string> warnings(const Segmentation_report& r)
   // a stem hidden by shrubs: diameter at breast height / height, in medians of the stand, and at
   // least, since old trees are stouter than young ones [-]
   constexpr double stout = 2, min_stout = 0.04;
+  std::vector<Tree_doubt> doubts;
+  const auto add = [&](const std::string& what, const auto& is_doubtful) {
+    Tree_doubt doubt{what, {}};
+    for (std::size_t t = 0; t < r.trees.size(); ++t)
+      if (is_doubtful(r.trees[t]))
+        doubt.trees.push_back(t);
+    if (!doubt.trees.empty())
+      doubts.push_back(doubt);
+  };
+  const auto is_low = [&](const Segmented_tree& t) { return t.height < r.breast_height; };
+  add("lower than breast height, perhaps shrubs", is_low);
+  add("with a stem too thick for the height, perhaps several stems or ground in one",
+      [&](const Segmented_tree& t) {
+        return !is_low(t) &&
+               std::max(2 * t.radius, t.diameter_at_breast_height) > max_diameter * t.height;
+      });
+  add("with a foot far above the ground; the lower stem may be missing or too sparse, so foot, "
+      "diameter and height are wrong",
+      [&](const Segmented_tree& t) { return t.foot_above_ground > max_foot * t.height; });
+  if (r.trees.size() < min_trees)
+    return doubts;
+  std::vector<double> heights, radii, ratios;
+  for (const Segmented_tree& tree : r.trees) {
+    heights.push_back(tree.height);
+    radii.push_back(tree.radius);
+    if (tree.diameter_at_breast_height > 0 && !is_low(tree))
+      ratios.push_back(tree.diameter_at_breast_height / tree.height);
+  }
+  const double limit = std::max(min_stout, stout * internal::lower_median(ratios));
+  add("thicker at breast height than others of the same height; shrubs or other stems may hide "
+      "the stem",
+      [&](const Segmented_tree& t) {
+        return !is_low(t) && t.diameter_at_breast_height > limit * t.height &&
+               t.diameter_at_breast_height <= max_diameter * t.height;
+      });
+  const double typical_height = internal::lower_median(heights),
+               typical_radius = internal::lower_median(radii);
+  add("much lower than others with stems as thick; the top may be missing, or part of a "
+      "neighbouring tree",
+      [&](const Segmented_tree& t) {
+        return !is_low(t) && t.height < cut_height * typical_height &&
+               t.radius > full_radius * typical_radius;
+      });
+  return doubts;
+}
+
+} // namespace internal
+
+//! \ingroup PkgPcsSkeletonRef
+//! returns one sentence for each reason to doubt the segmentation; empty for most stands
+inline std::vector<std::string> warnings(const Segmentation_report& r)
+{
+  constexpr std::size_t max_listed = 8;
   double height = 0;
   for (const Segmented_tree& tree : r.trees)
     height = std::max(height, tree.height);
   std::vector<std::string> sentences;
   internal::warn_of_unit("a tree", height, r.breast_height, sentences);
-  const auto is_low = [&](const Segmented_tree& t) { return t.height < r.breast_height; };
-  internal::warn_of_trees(r, is_low, "lower than breast height, perhaps shrubs", sentences);
-  internal::warn_of_trees(
-      r,
-      [&](const Segmented_tree& t) {
-        return !is_low(t) &&
-               std::max(2 * t.radius, t.diameter_at_breast_height) > max_diameter * t.height;
-      },
-      "with a stem too thick for the height, perhaps several stems or ground in one",
-      sentences);
-  internal::warn_of_trees(
-      r,
-      [&](const Segmented_tree& t) { return t.foot_above_ground > max_foot * t.height; },
-      "with a foot far above the ground; the lower stem may be missing or too sparse, so foot, "
-      "diameter and height are wrong",
-      sentences);
-  if (r.trees.size() >= min_trees) {
-    std::vector<double> heights, radii, ratios;
-    for (const Segmented_tree& tree : r.trees) {
-      heights.push_back(tree.height);
-      radii.push_back(tree.radius);
-      if (tree.diameter_at_breast_height > 0 && !is_low(tree))
-        ratios.push_back(tree.diameter_at_breast_height / tree.height);
-    }
-    const double limit = std::max(min_stout, stout * internal::lower_median(ratios));
-    internal::warn_of_trees(
-        r,
-        [&](const Segmented_tree& t) {
-          return !is_low(t) && t.diameter_at_breast_height > limit * t.height &&
-                 t.diameter_at_breast_height <= max_diameter * t.height;
-        },
-        "thicker at breast height than others of the same height; shrubs or other stems may hide "
-        "the stem",
-        sentences);
-    const double typical_height = internal::lower_median(heights),
-                 typical_radius = internal::lower_median(radii);
-    internal::warn_of_trees(
-        r,
-        [&](const Segmented_tree& t) {
-          return !is_low(t) && t.height < cut_height * typical_height &&
-                 t.radius > full_radius * typical_radius;
-        },
-        "much lower than others with stems as thick; the top may be missing, or part of a "
-        "neighbouring tree",
-        sentences);
+  for (const internal::Tree_doubt& doubt : internal::doubts_of_trees(r)) {
+    std::string list;
+    for (std::size_t k = 0; k < std::min(max_listed, doubt.trees.size()); ++k)
+      list += (k == 0 ? "" : ", ") + std::to_string(doubt.trees[k]);
+    sentences.push_back(std::to_string(doubt.trees.size()) + " tree(s) " + doubt.what +
+                        ": number " + list + (doubt.trees.size() > max_listed ? ", ..." : ""));
   }
   return sentences;
+}
+
+//! \ingroup PkgPcsSkeletonRef
+//! returns the reasons of `warnings()` for each tree, in the order of the trees; empty for most
+inline std::vector<std::vector<std::string>> warnings_of_trees(const Segmentation_report& r)
+{
+  std::vector<std::vector<std::string>> reasons(r.trees.size());
+  for (const internal::Tree_doubt& doubt : internal::doubts_of_trees(r))
+    for (const std::size_t tree : doubt.trees)
+      reasons[tree].push_back(doubt.what);
+  return reasons;
 }
 
 namespace internal {

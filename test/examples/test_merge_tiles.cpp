@@ -138,6 +138,8 @@ struct Merge_run : Program_run
       found.radius = 1 - 0.05 * double(order[k]);
       found.diameter_at_breast_height = found.radius / 3;
       found.is_at_rim = order[k] == 7;
+      if (order[k] == doubtful)
+        found.warnings = {"too thick, or \"two\" stems", "lower than others"};
       result.trees.push_back(found);
     }
     if (has_samples)
@@ -192,8 +194,9 @@ struct Merge_run : Program_run
   std::vector<std::array<double, 3>> feet;
   std::map<std::size_t, std::array<double, 3>> first_foot_in; ///< foot of tree 0, by tile
   bool has_samples = false;
-  double breast_height = 1.3;        ///< of the results
-  std::optional<std::size_t> hidden; ///< a tree that its owner does not find
+  double breast_height = 1.3;          ///< of the results
+  std::optional<std::size_t> hidden;   ///< a tree that its owner does not find
+  std::optional<std::size_t> doubtful; ///< a tree with warnings
   std::string tile_folder = "tiles";
   std::vector<std::int32_t> trees; ///< of the points of the plot
   Table plot;
@@ -283,6 +286,32 @@ BOOST_AUTO_TEST_CASE(points_table_and_files_have_the_trees_of_the_plot)
   BOOST_TEST(report["unmatched_trees"].empty());
   BOOST_TEST(report["close_feet"].empty());
   BOOST_TEST(err.find("1 tree(s) touch the outer rim") != std::string::npos, err);
+}
+
+BOOST_AUTO_TEST_CASE(warnings_about_a_tree_reach_table_outlines_and_report)
+{
+  doubtful = 4;
+  write_results("results", 1);
+  BOOST_TEST_REQUIRE(run("--tiles tiles/tiles.json --results results --table trees.csv "
+                         "--report r.json --crowns crowns.json") == 0,
+                     err);
+  const std::string expected = "too thick, or \"two\" stems; lower than others";
+  const Json crowns = Json::parse(content("crowns.json"));
+  std::istringstream lines(content("trees.csv"));
+  std::string line;
+  std::getline(lines, line);
+  BOOST_TEST(line.find(",warnings") == line.size() - 9);
+  for (std::size_t t = 0; t < number_of_trees; ++t) {
+    std::getline(lines, line);
+    const std::string field =
+        t == 4 ? ",\"too thick, or \"\"two\"\" stems; lower than others\"" : ",";
+    BOOST_TEST(line.substr(line.size() - field.size()) == field);
+    BOOST_TEST(crowns["features"][t]["properties"]["warnings"] == (t == 4 ? expected : ""));
+  }
+  const std::string warning = "1 tree(s) " + expected + ": number 4";
+  BOOST_TEST(err.find(warning) != std::string::npos, err);
+  report = Json::parse(content("r.json"));
+  BOOST_TEST(std::count(report["warnings"].begin(), report["warnings"].end(), Json(warning)) == 1);
 }
 
 BOOST_AUTO_TEST_CASE(bytes_do_not_depend_on_the_order_of_trees_and_the_number_of_open_files)

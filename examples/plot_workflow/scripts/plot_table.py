@@ -45,7 +45,7 @@ def row_of(tree, reports, errors, close, lost, skipped):
         points=int(tree["points"]),
         tile=tree["tile"],
     )
-    warnings = []
+    warnings = [tree["warnings"]] if tree["warnings"] else []  # of segment_trees
     report = reports.get(tree["file"])
     if report:
         error = report["standard_errors"]

@@ -35,6 +35,7 @@ struct Tree_of_tile
   /// Indices of points of the tile and its buffer, see `Index_sample`; empty away from the core's
   /// border.
   std::vector<std::uint64_t> sample;
+  std::vector<std::string> warnings; ///< reasons to doubt the tree
 };
 
 /// The result of a tile without its points.
@@ -73,6 +74,8 @@ inline nlohmann::ordered_json to_json(const Tile_result& result)
                      {"is_at_rim", tree.is_at_rim}});
     if (!tree.sample.empty())
       trees.back()["sample"] = tree.sample;
+    if (!tree.warnings.empty())
+      trees.back()["warnings"] = tree.warnings;
   }
   return {{"core", to_json(result.core)},
           {"buffered", to_json(result.buffered)},
@@ -114,6 +117,16 @@ inline Tree_of_tile read_tree_of_tile(const Json_value& value)
                            " indices");
     for (std::size_t i = 0; i < sample.size(); ++i)
       tree.sample.push_back(read_count(sample[i]));
+  }
+  if (value.has("warnings")) {
+    const Json_value warnings = value["warnings"];
+    if (!warnings.json().is_array())
+      warnings.fail_expected("an array of texts");
+    for (std::size_t i = 0; i < warnings.size(); ++i) {
+      if (!warnings[i].json().is_string())
+        warnings[i].fail_expected("a text");
+      tree.warnings.push_back(warnings[i].json().get<std::string>());
+    }
   }
   return tree;
 }

@@ -152,8 +152,10 @@ private:
     result.core = m_tile.core;
     result.buffered = m_tile.buffered;
     result.breast_height = report.breast_height;
+    const std::vector<std::vector<std::string>> reasons = pcs::warnings_of_trees(report);
     for (const pcs::Segmented_tree& found : report.trees) {
       Tree_of_tile tree;
+      tree.warnings = reasons[result.trees.size()];
       tree.foot = found.foot;
       tree.radius = found.radius;
       tree.diameter_at_breast_height = found.diameter_at_breast_height;
