@@ -59,11 +59,12 @@ const char* help()
   return R"(Tiles: tiles.json of tile_points, beside the tiles.
 Results: the folder of segment_trees --tile-results, the same for all tiles.
 Trees: a tree belongs to the tile whose core holds its foot. A tree of another tile is the tree of
-that tile with the nearest foot, by horizontal distance, at most --tolerance away. A tree without
-such a foot is unmatched: its points have no tree, and the report lists it. Trees of two tiles with
-feet within --tolerance on both sides of a border are one tree of the tile listed first if they
-share more than half of their points (by samples of segment_trees). Trees are numbered from 0 by
-descending radius, so the numbers do not depend on the order in which tiles were segmented.
+that tile with the nearest foot, by horizontal distance, at most --tolerance away, or else the one
+with the nearest foot in any other tile. A tree without such a foot is unmatched: its points have no
+tree, and the report lists it. Trees of two tiles with feet within --tolerance on both sides of a
+border are one tree of the tile listed first if they share more than half of their points (by
+samples of segment_trees). Trees are numbered from 0 by descending radius, so the numbers do not
+depend on the order in which tiles were segmented.
 Table: one row per tree (CSV): tree, x, y, z (of the foot), radius, diameter_at_breast_height,
 height, points, tile, parts (tiles whose cores have points of it), is_at_rim (it touches the outer
 rim of the buffer of its tile), cut_parts (other tiles where it does), file, crown_area (of the

@@ -443,6 +443,26 @@ BOOST_AUTO_TEST_CASE(a_tree_that_only_other_tiles_find_is_named)
   BOOST_TEST(Json::parse(content("r.json"))["missed_trees"].empty());
 }
 
+BOOST_AUTO_TEST_CASE(a_tree_that_a_third_tile_sees_beyond_a_border_is_not_missing)
+{
+  const std::size_t one = owner_of(0);
+  const double border = manifest["tiles"][one]["core"]["high"][0];
+  feet[0][0] = border + 0.05;
+  const std::size_t other = owner_of(0);
+  std::size_t third = 0;
+  while (third == one || third == other)
+    ++third;
+  first_foot_in[third] = feet[0];
+  feet[0][0] = border - 0.05; // in all other tiles
+  BOOST_TEST_REQUIRE(owner_of(0) == one);
+  write_results("results", 1, 0);
+  BOOST_TEST_REQUIRE(run("--tiles tiles/tiles.json --results results --report r.json") == 0, err);
+  report = Json::parse(content("r.json"));
+  BOOST_TEST(report["trees"] == number_of_trees);
+  BOOST_TEST(report["missed_trees"].empty());
+  BOOST_TEST(report["unmatched_trees"].empty());
+}
+
 BOOST_AUTO_TEST_CASE(a_tree_that_is_found_on_both_sides_of_a_border_is_one_tree)
 {
   // each of two tiles finds tree 0 in its own core

@@ -39,7 +39,9 @@ struct Plot_tree
 
 /*!
   A tree of a tile whose foot is in another core is the tree of that tile with the nearest foot, by
-  horizontal distance. Without such a foot within the tolerance it is unmatched. A tree whose foot
+  horizontal distance. Without such a foot within the tolerance, it is the tree with the nearest
+  foot in any other tile: near a border of cores, feet that differ by centimetres have different
+  owners. Without such a foot either, it is unmatched. A tree whose foot
   is at a border of cores may be found on both sides: trees of two tiles whose feet are within the
   tolerance, and which share most of their points, are one tree of the tile with the smaller number.
   The trees are in descending order of radius, and of equal radius in the order of their feet, so
@@ -89,9 +91,12 @@ public:
     }
     for (std::size_t t = 0; t < results.size(); ++t)
       for (std::size_t k = 0; k < owner[t].size(); ++k) {
+        if (owner[t][k] == t)
+          continue;
         const Tree_of_tile& tree = results[t]->trees[k];
-        if (owner[t][k] != t)
-          m_tree_of[t][k] = nearest(own[owner[t][k]], tree.foot, tolerance);
+        m_tree_of[t][k] = nearest(own[owner[t][k]], tree.foot, tolerance);
+        if (m_tree_of[t][k] == no_tree)
+          m_tree_of[t][k] = nearest(of_other_tiles(t), tree.foot, tolerance);
       }
     join_twins(results, find_twins(tolerance));
     m_twins = find_twins(tolerance);
@@ -129,6 +134,15 @@ private:
   {
     const Position_2 p = position(a), q = position(b);
     return std::hypot(p[0] - q[0], p[1] - q[1]);
+  }
+
+  std::vector<std::size_t> of_other_tiles(std::size_t tile) const
+  {
+    std::vector<std::size_t> others;
+    for (std::size_t p = 0; p < m_trees.size(); ++p)
+      if (m_trees[p].tile != tile)
+        others.push_back(p);
+    return others;
   }
 
   std::int32_t nearest(const std::vector<std::size_t>& among,
