@@ -212,8 +212,8 @@ private:
   }
 
   /// Performs one iteration, accelerated if this lowers the energy, otherwise plain. Returns
-  /// `false` if neither lowers the energy. Usually, only rounding errors remain then. A clear rise
-  /// of the energy, however, is no sign of convergence, and the status says so.
+  /// `false` if neither lowers the energy. Usually, only rounding errors remain then. If the material
+  /// is stretched, a clear rise of the energy is no sign of convergence, and the status says so.
   bool improve(bool is_accelerated, bool is_last, double tolerance, Elastic_result& result)
   {
     m_shape.keep();
@@ -237,7 +237,7 @@ private:
     if (!(energy < result.energy)) {
       m_smooth.swap(m_best_smooth);
       m_shape.return_to(m_smooth);
-      if (!m_shape.has_link_offsets() &&
+      if (m_shape.is_stretched() && !m_shape.has_link_offsets() &&
           rise > std::max(tolerance, default_tolerance) * result.energy)
         result.status = Status::iteration_limit;
       return false;
