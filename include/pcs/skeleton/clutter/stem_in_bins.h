@@ -25,8 +25,9 @@ namespace skeleton {
 /// Options of the search for the stem in bins.
 struct Stem_bin_options
 {
-  double bin = 0.01;  ///< height of a bin / vertical extent; the height is at least 4 spacings [-]
-  int bins = 12;      ///< lowest bins, in which the stem is searched [count]
+  double bin = 0.01; ///< height of a bin / vertical extent; the height is at least 4 spacings [-]
+  int bins = 12;     ///< lowest bins, in which the stem is searched [count]
+  bool do_compare_links = true; ///< otherwise, the largest linked component continues the stem
   double rival = 0.1; ///< least fraction of the links of the stem that another candidate has [-]
   double crown = 0.5; ///< lower end of the crown that decides between them / vertical extent [-]
 };
@@ -179,7 +180,9 @@ inline Stem_in_bins stem_in_bins(const Scan& scan,
     Index part = none;
     const auto offer = [&](Index i) {
       const Index s = sets.find(i);
-      const auto rank = [&](Index t) { return std::make_pair(contact[t], size[t]); };
+      const auto rank = [&](Index t) {
+        return std::make_pair(rules.do_compare_links ? contact[t] : Index(contact[t] > 0), size[t]);
+      };
       if (part == none || rank(s) > rank(part) || (rank(s) == rank(part) && s < part))
         part = s;
     };
@@ -191,7 +194,7 @@ inline Stem_in_bins stem_in_bins(const Scan& scan,
     }
     for (const Index i : bins.members[b])
       offer(i);
-    if (part != none && contact[part] > 0 && !is_found) {
+    if (rules.do_compare_links && part != none && contact[part] > 0 && !is_found) {
       is_found = true;
       const bool has_rival =
           std::any_of(bins.members[b].begin(), bins.members[b].end(), [&](Index i) {

@@ -138,8 +138,9 @@ bool find_stand(const Read_input& read_input,
   options.do_trace_paths = false;
   options.do_thin = false;
   options.clutter.ground.thickest = rules.foot * hints.breast_height; // feet remain
-  options.clutter.ground.do_accept_areas = false; // sparse ground of stands would be too thick
+  options.clutter.ground.do_accept_areas = false;   // sparse ground of stands would be too thick
   options.clutter.ground.objects.do_remove = false; // they may be trees
+  options.clutter.ground.stem.do_compare_links = false; // crowns link many stems
   Session<ConcurrencyTag> session(std::move(thinned.points), {}, options);
   if (!session.find_paths(progress))
     return false;
