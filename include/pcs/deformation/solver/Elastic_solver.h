@@ -212,8 +212,9 @@ private:
   }
 
   /// Performs one iteration, accelerated if this lowers the energy, otherwise plain. Returns
-  /// `false` if neither lowers the energy. Usually, only rounding errors remain then. If the material
-  /// is stretched, a clear rise of the energy is no sign of convergence, and the status says so.
+  /// `false` if neither lowers the energy. Usually, only rounding errors remain then. If the
+  /// material is stretched, a clear rise of the energy is no sign of convergence, and the status
+  /// says so.
   bool improve(bool is_accelerated, bool is_last, double tolerance, Elastic_result& result)
   {
     m_shape.keep();
