@@ -121,6 +121,32 @@ BOOST_AUTO_TEST_CASE(the_underside_of_a_crown_is_no_terrain)
   BOOST_TEST(!Found(false).terrain.has_value());
 }
 
+// A whorl of dense branches hides most of the lower stem. Points of the stem lie below each other,
+// stray points below the ground do not.
+BOOST_AUTO_TEST_CASE(a_whorl_above_a_thin_stem_is_no_terrain)
+{
+  for (const bool has_stem : {true, false}) {
+    std::mt19937 random(2);
+    std::uniform_real_distribution<double> share(0, 1);
+    std::vector<Vec3> points;
+    for (int i = 0; i < 6000; ++i)
+      points.emplace_back(3 * share(random) - 1.5, 3 * share(random) - 1.5, 0);
+    for (int i = 0; i < 3000; ++i) {
+      const double a = 2 * pi * share(random);
+      points.emplace_back(0.15 * std::cos(a), 0.15 * std::sin(a), 6 * share(random));
+    }
+    for (int i = 0; i < 100; ++i) {
+      const double a = 2 * pi * share(random), r = has_stem ? 0.15 : 1.5 * share(random);
+      points.emplace_back(r * std::cos(a), r * std::sin(a), -4 * share(random));
+    }
+    pcs::skeleton::Scan scan;
+    pcs::skeleton::prepare_scan<CGAL::Sequential_tag>(points, Vec3::UnitZ(), scan);
+    const std::vector<std::uint8_t> is_used(scan.size(), 1);
+    const auto terrain = pcs::skeleton::find_terrain(scan, Vec3::UnitZ(), {}, is_used);
+    BOOST_TEST(terrain.has_value() == !has_stem);
+  }
+}
+
 BOOST_AUTO_TEST_SUITE_END()
 
 } // namespace test_Terrain

@@ -36,6 +36,7 @@ struct Terrain_options
   double steepest = 1;     ///< largest slope from cell to cell [-]
   double below = 0.02;     ///< largest fraction of points deeper than half a cell [-]
   double sheet = 2; ///< least ratio of points within half a cell to points up to one cell above [-]
+  double upright = 3; ///< least ratio of median deviations, vertical to horizontal, of a stem [-]
 };
 
 /// Horizontal rectangle that contains nearly all points.
@@ -107,7 +108,8 @@ public:
     return at.height - level;
   }
 
-  /// Returns whether few points lie below the surface, and few directly above it.
+  /// Returns whether few points lie below the surface, which are no stem, and few directly above
+  /// it.
   bool carries_all(const Scan& scan,
                    const Terrain_options& rules,
                    const std::vector<std::uint8_t>& is_used) const
@@ -115,17 +117,19 @@ public:
     const double half = 0.5 * m_cell;
     const auto most_below =
         rules.below * double(std::count(is_used.begin(), is_used.end(), std::uint8_t(1)));
-    std::size_t below = 0, on = 0, above = 0;
-    for (std::size_t i = 0; i < scan.size() && double(below) <= most_below; ++i) {
+    std::vector<Index> below;
+    std::size_t on = 0, above = 0;
+    for (std::size_t i = 0; i < scan.size() && double(below.size()) <= most_below; ++i) {
       if (!is_used[i])
         continue;
       const double h = height(scan.points[i]);
       if (h < -half)
-        ++below;
+        below.push_back(static_cast<Index>(i));
       else if (h <= 3 * half && is_surface(cell_of(place(scan.points[i]).q)))
         ++(h <= half ? on : above);
     }
-    return double(below) <= most_below && on > 0 && double(on) >= rules.sheet * double(above);
+    return double(below.size()) <= most_below && on > 0 &&
+           double(on) >= rules.sheet * double(above) && !is_stem(scan, below, rules.upright);
   }
 
   /// Returns the 90th percentile of the distances of the points of the surface from it [L].
@@ -201,6 +205,30 @@ private:
   };
 
   Place place(const Vec3& p) const { return {Vec2(m_e1.dot(p), m_e2.dot(p)), m_up.dot(p)}; }
+
+  /// Returns whether points lie along an upright line, by medians: a stem below a whorl of
+  /// branches, unlike stray points below the ground.
+  bool is_stem(const Scan& scan, const std::vector<Index>& points, double upright) const
+  {
+    constexpr std::size_t few = 10;
+    if (points.size() < few)
+      return false;
+    std::vector<double> x, y, z, across, along;
+    for (const Index i : points) {
+      const Place at = place(scan.points[i]);
+      x.push_back(at.q.x());
+      y.push_back(at.q.y());
+      z.push_back(at.height);
+    }
+    const Vec2 middle(pcs::internal::upper_median(x), pcs::internal::upper_median(y));
+    const double level = pcs::internal::upper_median(z);
+    for (const Index i : points) {
+      const Place at = place(scan.points[i]);
+      across.push_back((at.q - middle).norm());
+      along.push_back(std::abs(at.height - level));
+    }
+    return pcs::internal::upper_median(along) >= upright * pcs::internal::upper_median(across);
+  }
 
   double plane_at(const Vec2& q) const
   {

@@ -165,11 +165,19 @@ inline void warn_of_shape(const Skeleton_report& r, std::vector<std::string>& se
 /// Adds warnings about the foot, the trunk and the stems.
 inline void warn_of_stems(const Skeleton_report& r, std::vector<std::string>& sentences)
 {
-  constexpr double max_elevation = 0.1; // root elevation / height above the lowest points [-]
-  if (r.hidden_trunk_length > 0)
-    sentences.push_back("leaves hide the upper " + short_text(r.hidden_trunk_length) +
-                        " of the trunk, which is inferred: it is continued straight to the "
-                        "top of the tree (do_continue_trunk(false) keeps it as it was found)");
+  constexpr double max_elevation = 0.1;  // root elevation / height above the lowest points [-]
+  constexpr double much_inferred = 0.25; // of the volume [-]
+  if (r.hidden_trunk_length > 0) {
+    const double share = r.hidden_trunk_volume / r.total.volume;
+    sentences.push_back(
+        "leaves hide the upper " + short_text(r.hidden_trunk_length) +
+        " of the trunk, which is inferred" +
+        (share > much_inferred
+             ? ", and with it " + short_text(std::round(100 * share)) + " % of the volume"
+             : "") +
+        ": it is continued straight to the top of the tree (do_continue_trunk(false) keeps it as "
+        "it was found)");
+  }
   // the axis of a lying stem is one radius above its underside
   if (r.root_elevation > std::max(max_elevation * (r.root_elevation + r.height), trunk_diameter(r)))
     sentences.push_back("the root is " + short_text(r.root_elevation) +

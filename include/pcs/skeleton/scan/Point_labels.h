@@ -137,8 +137,8 @@ public:
       }
   }
 
-  /// Returns the 99.9th percentile of the heights of the leaves from leaf-wood separation; the
-  /// lowest number without leaves [L].
+  /// Returns the height of the highest leaves from leaf-wood separation, without the highest 1/1000
+  /// of them, but at most ten, which may be stray points. The lowest number without leaves [L].
   double top_of_leaves(const Vec3& up) const
   {
     std::vector<double> heights;
@@ -147,7 +147,8 @@ public:
         heights.push_back(up.dot(m_scan.points[i]));
     if (heights.empty())
       return std::numeric_limits<double>::lowest();
-    return pcs::internal::value_of_rank(heights, heights.size() - 1 - heights.size() / 1000);
+    const std::size_t strays = std::min<std::size_t>(heights.size() / 1000, 10);
+    return pcs::internal::value_of_rank(heights, heights.size() - 1 - strays);
   }
 
 private:
