@@ -242,7 +242,7 @@ BOOST_AUTO_TEST_CASE(feet_far_above_the_ground_are_named)
   report.trees[1].foot_above_ground = 1.5;
   const std::vector<std::string> sentences = pcs::warnings(report);
   BOOST_TEST_REQUIRE(sentences.size() == 1u);
-  BOOST_TEST(sentences[0].find("1 tree(s) with a foot far above the ground") == 0u);
+  BOOST_TEST(sentences[0].find("1 tree(s) with a stem that begins far above the ground") == 0u);
   BOOST_TEST(sentences[0].find("number 1") != std::string::npos);
 }
 
@@ -590,6 +590,36 @@ BOOST_AUTO_TEST_CASE(stray_points_below_the_ground_hide_no_tree)
     const auto [right, wrong] = shares(stand, trees, report);
     BOOST_TEST(right > 0.9);
     BOOST_TEST(wrong < 0.1);
+  }
+}
+
+// Poles on ground that rises by 14 m. Feet and breast heights are measured from the ground.
+BOOST_AUTO_TEST_CASE(trees_on_a_steep_slope_are_found)
+{
+  constexpr double slope = 0.8;
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> along(-2, 16), across(-3, 3), noise(-0.05, 0.05);
+  Cloud points;
+  for (int i = 0; i < 2000; ++i) {
+    const double x = along(random);
+    points.emplace_back(x, across(random), slope * x + noise(random));
+  }
+  for (int k = 0; k < 6; ++k) {
+    Cloud tree = pole(0, 4);
+    for (Point& p : tree)
+      p = p + Vector(2.8 * k, 0, slope * 2.8 * k);
+    append(points, tree);
+  }
+  Labels trees;
+  const auto report = segment(points, trees);
+  BOOST_REQUIRE(report.trees.size() == 6u);
+  for (int k = 0; k < 6; ++k) {
+    const Point foot(2.8 * k, 0, slope * 2.8 * k);
+    double distance = 0;
+    const pcs::Segmented_tree& tree = report.trees[nearest_tree(report, foot, distance)];
+    BOOST_TEST(distance < 0.1);
+    BOOST_TEST(std::abs(tree.height - 4) < 0.1);
+    BOOST_TEST(std::abs(tree.diameter_at_breast_height - 0.09) < 0.01);
   }
 }
 

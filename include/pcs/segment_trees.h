@@ -39,13 +39,14 @@ namespace pcs {
 //! a tree found by `segment_trees()`
 struct Segmented_tree
 {
-  //! base of the axis of its thickest stem, in coordinates of the input [L]
+  //! base of the axis of its thickest stem, in coordinates of the input; it is moved to the ground
+  //! below if that is known, and at most breast height away [L]
   std::array<double, 3> foot{};
   double radius = 0; ///< largest radius of that stem up to half the breast height [L]
-  double diameter_at_breast_height = 0; ///< of that stem; 0 if its axis ends below [L]
+  double diameter_at_breast_height = 0; ///< of that stem; 0 if it ends below [L]
   std::size_t number_of_points = 0;     ///< [count]
   double height = 0;                    ///< of its highest point above the foot [L]
-  //! height of the foot above the ground below it; 0 if that ground is not known [L]
+  //! height of the lower end of this axis above the ground; 0 if the ground is not known [L]
   double foot_above_ground = 0;
 };
 
@@ -79,7 +80,7 @@ struct Tree_doubt
 inline std::vector<Tree_doubt> doubts_of_trees(const Segmentation_report& r)
 {
   constexpr double max_diameter = 0.1; // stem diameter / height; trees: 0.01 to 0.05 [-]
-  constexpr double max_foot = 0.1; // height of the foot above the ground / height of the tree [-]
+  constexpr double max_foot = 0.1; // height of the lower end of the stem / height of the tree [-]
   // a tree without its top: height and radius, in medians of a stand of at least this many trees
   constexpr double cut_height = 0.6, full_radius = 0.8;
   constexpr std::size_t min_trees = 4;
@@ -102,8 +103,8 @@ inline std::vector<Tree_doubt> doubts_of_trees(const Segmentation_report& r)
         return !is_low(t) &&
                std::max(2 * t.radius, t.diameter_at_breast_height) > max_diameter * t.height;
       });
-  add("with a foot far above the ground; the lower stem may be missing or too sparse, so foot, "
-      "diameter and height are wrong",
+  add("with a stem that begins far above the ground; its lower part may be missing or too sparse, "
+      "so foot, diameter and height may be wrong",
       [&](const Segmented_tree& t) { return t.foot_above_ground > max_foot * t.height; });
   if (r.trees.size() < min_trees)
     return doubts;

@@ -9,6 +9,7 @@
 
 #include <boost/test/unit_test.hpp>
 
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -100,6 +101,41 @@ BOOST_AUTO_TEST_CASE(points_beside_a_stem_are_no_part_of_it)
 {
   // the shrub has more points than the trunk, most of them out of reach
   BOOST_TEST(Sparse_tree(15, true).lowest_axis(Vec3(0.1, 0, 1.5)) == trunk);
+}
+
+BOOST_AUTO_TEST_CASE(the_foot_lies_on_the_ground_if_that_is_near)
+{
+  Found_stem stem{trunk, none, Vec3(1, 2, 3), 0.15, 0, 0};
+  for (const double above : {0.3, -0.2, 1.3}) {
+    stem.above_ground = above;
+    BOOST_TEST((stem.foot_on_ground(breast_height) - Vec3(1, 2, 3 - above)).norm() < 1e-12);
+  }
+  stem.above_ground = 1.4;
+  BOOST_TEST((stem.foot_on_ground(breast_height) == stem.foot));
+}
+
+// Breast height is 1.3 above the ground, which is 0.2 below the base of the axis.
+BOOST_AUTO_TEST_CASE(another_axis_may_continue_a_stem_up_to_breast_height)
+{
+  const auto axis = [](const Vec3& base, double length, double radius) {
+    pcs::skeleton::Fitted_axis result;
+    for (const double t : {0.0, 0.5, 1.0})
+      result.axis.push_back({base + t * length * Vec3::UnitZ(), radius * (1 - 0.1 * t)});
+    return result;
+  };
+  const auto radius_of = [&](const std::vector<pcs::skeleton::Fitted_axis>& list) {
+    Axis_set axes;
+    axes.axes = list;
+    Found_stem stem{0, none, Vec3::Zero(), 0.1, 0, 0};
+    stem.above_ground = 0.2;
+    return pcs::skeleton::internal::radius_at_breast(stem, axes, breast_height, Stand_options());
+  };
+  const auto whole = axis(Vec3::Zero(), 2, 0.1), lower = axis(Vec3::Zero(), 1, 0.1),
+             upper = axis(Vec3(0.05, 0, 1), 2, 0.09), thick = axis(Vec3(0.05, 0, 1), 2, 0.2),
+             far = axis(Vec3(0.6, 0, 1), 2, 0.09);
+  BOOST_TEST(std::abs(radius_of({whole, upper}) - 0.1 * (1 - 0.1 * 1.1 / 2)) < 1e-12);
+  BOOST_TEST(std::abs(radius_of({lower, upper}) - 0.09 * (1 - 0.1 * 0.1 / 2)) < 1e-12);
+  BOOST_TEST(radius_of({lower, thick, far}) == 0);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

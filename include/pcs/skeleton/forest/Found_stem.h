@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <map>
 #include <set>
 #include <vector>
@@ -31,7 +32,15 @@ struct Found_stem
   double radius;           ///< largest radius in the lowest part
   double radius_at_breast; ///< radius at breast height; 0 if the axis ends below it
   double height;           ///< of the foot above the lowest ground around it
-  double above_ground = 0; ///< of the foot above the ground below it; 0 if that is not known
+  double above_ground = 0; ///< of the foot above the ground below it; 0 if that is not known [L]
+
+  /// Returns the foot on the ground. It stays where it is if the ground is farther than breast
+  /// height, and may belong to something else. z points upwards.
+  Vec3 foot_on_ground(double breast_height) const
+  {
+    return std::abs(above_ground) <= breast_height ? Vec3(foot - above_ground * Vec3::UnitZ())
+                                                   : foot;
+  }
 };
 
 /// Returns whether a stem belongs to the tree of a stem of at least its radius. z points upwards.
@@ -56,22 +65,52 @@ inline double radius_near(const Axis& axis, const Vec3& foot, double part)
   return radius;
 }
 
-/// Returns the radius at breast height above the foot, or 0 if the axis ends below.
-inline double radius_at_breast(const Axis& axis, const Vec3& foot, double breast_height)
-{
-  const double height = foot.z() + breast_height;
-  for (std::size_t k = 1; k < axis.size(); ++k) {
-    const double a = axis[k - 1].point.z(), b = axis[k].point.z();
-    if (std::min(a, b) <= height && height < std::max(a, b))
-      return axis[k - 1].radius + (axis[k].radius - axis[k - 1].radius) * (height - a) / (b - a);
-  }
-  return 0;
-}
-
 /// Returns how far from its foot a stem may continue below, in the plan [L].
 inline double reach_below(const Found_stem& stem, double breast_height, const Stand_options& rules)
 {
   return rules.stool_radii * stem.radius + rules.stool * breast_height;
+}
+
+/// Returns the largest radius of an axis where it crosses `height` at most `reach` from `foot` in
+/// the plan; 0 if it does not [L].
+inline double radius_at(const Axis& axis, double height, const Vec3& foot, double reach)
+{
+  double radius = 0;
+  for (std::size_t k = 1; k < axis.size(); ++k) {
+    const Axis_node &a = axis[k - 1], &b = axis[k];
+    const double low = std::min(a.point.z(), b.point.z()),
+                 high = std::max(a.point.z(), b.point.z());
+    if (!(low <= height && height < high))
+      continue;
+    const double t = (height - a.point.z()) / (b.point.z() - a.point.z());
+    const Vec3 d = a.point + t * (b.point - a.point) - foot;
+    if (std::hypot(d.x(), d.y()) <= reach)
+      radius = std::max(radius, a.radius + t * (b.radius - a.radius));
+  }
+  return radius;
+}
+
+/// Returns the radius of a stem at breast height above the ground. If its axis ends below, or is
+/// much thinner there, another axis near the foot may continue it, which is not thicker than its
+/// lowest part. 0 if there is none. O(nodes of the axes).
+inline double radius_at_breast(const Found_stem& stem,
+                               const Axis_set& axes,
+                               double breast_height,
+                               const Stand_options& rules)
+{
+  constexpr double thin = 0.5; // of the radius of the lowest part [-]
+  const double height = stem.foot_on_ground(breast_height).z() + breast_height;
+  const double anywhere = std::numeric_limits<double>::infinity();
+  double radius = radius_at(axes.axes[stem.axis].axis, height, stem.foot, anywhere);
+  if (radius >= thin * stem.radius)
+    return radius;
+  for (const auto& other : axes.axes) {
+    const double r =
+        radius_at(other.axis, height, stem.foot, reach_below(stem, breast_height, rules));
+    if (r <= stem.radius)
+      radius = std::max(radius, r);
+  }
+  return radius;
 }
 
 /// Returns whether a point may lie on the lowest part of a stem, or on its continuation below.

@@ -18,10 +18,12 @@ namespace skeleton {
 /// A tree, in input coordinates.
 struct Detected_tree
 {
-  Vec3 foot = Vec3::Zero();    ///< lower end of the axis of its thickest stem
+  //! lower end of the axis of its thickest stem, moved to the ground if that is near
+  Vec3 foot = Vec3::Zero();
   double radius = 0;           ///< largest radius in the lowest part of this stem [L]
-  double radius_at_breast = 0; ///< its radius at breast height; 0 if its axis ends below [L]
-  double above_ground = 0;     ///< of the foot above the ground below; 0 if that is not known [L]
+  double radius_at_breast = 0; ///< its radius at breast height; 0 if it ends below [L]
+  //! of the lower end of this axis above the ground below; 0 if that is not known [L]
+  double above_ground = 0;
 };
 
 /// Returns the input points, the same at each call.

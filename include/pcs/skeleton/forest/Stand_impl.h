@@ -61,8 +61,8 @@ struct Ground_view
 
 /*!
   Returns the points that are left after the removal of clutter. If no ground was found, the points
-  of a sparse ground are removed, too. Stray points may not show ground if more points lie on it
-  without them: stray points below the ground hide it.
+  of a sparse ground are removed, too; otherwise, stray points far below the ground. Stray points may
+  not show ground if more points lie on it without them: stray points below the ground hide it.
 */
 template <class ConcurrencyTag>
 Ground_view view_ground(const Session<ConcurrencyTag>& session, double breast_height)
@@ -92,10 +92,10 @@ Ground_view view_ground(const Session<ConcurrencyTag>& session, double breast_he
   if (!ground.is_found())
     return view;
   view.ground = ground;
-  if (has_ground)
-    return view;
+  constexpr double deep = 0.5; // of stray points below the ground, in breast heights [-]
+  const double top = has_ground ? -deep * height : ground.thickness();
   for (std::size_t i = 0; i < scan.size(); ++i)
-    if (ground.height(scan.points[i]) <= ground.thickness())
+    if (ground.height(scan.points[i]) <= top)
       view.is_above[i] = 0;
   return view;
 }
@@ -152,15 +152,13 @@ bool find_stand(const Read_input& read_input,
   Stem_detector<ConcurrencyTag> finder(scan,
                                        view.is_above,
                                        view.may_be_ground,
+                                       view.ground,
                                        hints.breast_height / scan.frame.unit,
                                        options,
                                        rules);
   if (!finder.find(progress))
     return false;
   stand.stems = finder.stems();
-  for (Found_stem& stem : stand.stems)
-    if (view.ground)
-      stem.above_ground = view.ground->height(stem.foot);
   if (!are_wanted(stand, finder.stem_of_point()))
     return progress(1);
   if (!finder.label(progress, [&] { session.release_neighbors(); }))
@@ -322,7 +320,8 @@ bool find_trees(const Read_input& read_input,
   std::vector<Index> place(thickest.size());
   for (const internal::Found_stem& stem : thickest) {
     place[stem.tree] = static_cast<Index>(result.trees.size());
-    result.trees.push_back({stand.frame.to_input(stem.foot),
+    const Vec3 foot = stem.foot_on_ground(hints.breast_height / stand.frame.unit);
+    result.trees.push_back({stand.frame.to_input(foot),
                             stand.frame.unit * stem.radius,
                             stand.frame.unit * stem.radius_at_breast,
                             stand.frame.unit * stem.above_ground});

@@ -5,6 +5,7 @@
 #ifndef PCS_SKELETON_FOREST_STEM_DETECTOR_H
 #define PCS_SKELETON_FOREST_STEM_DETECTOR_H
 
+#include <pcs/internal/median.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
 #include <pcs/neighborhood/Nearest_neighbors.h>
@@ -12,6 +13,8 @@
 #include <pcs/skeleton/axes/fit_axes.h>
 #include <pcs/skeleton/branching/build_branch_tree.h>
 #include <pcs/skeleton/forest/Found_stem.h>
+#include <pcs/skeleton/forest/Lowest_ground.h>
+#include <pcs/skeleton/forest/Sparse_ground.h>
 #include <pcs/skeleton/forest/Stand_options.h>
 #include <pcs/skeleton/graph/Neighbor_graph.h>
 #include <pcs/skeleton/graph/shortest_paths.h>
@@ -35,44 +38,6 @@ namespace pcs {
 namespace skeleton {
 
 namespace internal {
-
-/// Estimates the ground from the lowest points in a horizontal grid and a largest slope.
-class Lowest_ground
-{
-public:
-  Lowest_ground(const Scan& scan,
-                double cell,
-                double slope,
-                const std::vector<std::uint8_t>& is_solid)
-    : m_slope(slope)
-  {
-    std::map<std::pair<double, double>, Vec3> lowest;
-    for (std::size_t i = 0; i < scan.size(); ++i) {
-      if (!is_solid[i])
-        continue;
-      const Vec3& p = scan.points[i];
-      const auto [at, is_new] =
-          lowest.emplace(std::make_pair(std::floor(p.x() / cell), std::floor(p.y() / cell)), p);
-      if (!is_new && p.z() < at->second.z())
-        at->second = p;
-    }
-    for (const auto& entry : lowest)
-      m_lowest.push_back(entry.second);
-  }
-
-  /// Returns the height of a point above the ground. O(cells).
-  double height(const Vec3& p) const
-  {
-    double ground = std::numeric_limits<double>::infinity();
-    for (const Vec3& q : m_lowest)
-      ground = std::min(ground, q.z() + m_slope * std::hypot(p.x() - q.x(), p.y() - q.y()));
-    return p.z() - ground;
-  }
-
-private:
-  double m_slope;
-  std::vector<Vec3> m_lowest;
-};
 
 /// Copies labels from the nearest labelled ancestor to unlabelled elements. `parent(i)` is `none`
 /// at a root. O(n).
@@ -103,12 +68,14 @@ public:
   Stem_detector(const Scan& scan,
                 const std::vector<std::uint8_t>& is_used,
                 const std::vector<std::uint8_t>& may_be_ground,
+                const std::optional<Sparse_ground>& surface,
                 double breast_height,
                 const Session_options& options,
                 const Stand_options& rules)
     : m_scan(scan),
       m_is_used(is_used),
       m_may_be_ground(may_be_ground),
+      m_surface(surface),
       m_breast_height(breast_height),
       m_options(options),
       m_rules(rules)
@@ -223,6 +190,7 @@ private:
   void find_stems()
   {
     const Lowest_ground ground(m_scan,
+                               m_surface,
                                m_rules.ground_cell * m_breast_height,
                                m_rules.ground_slope,
                                m_is_solid);
@@ -233,6 +201,9 @@ private:
         found.push_back(stem_of(a, foot->point, ground));
     }
     continue_down(ground, found);
+    measure_feet(found);
+    for (Found_stem& stem : found)
+      stem.radius_at_breast = radius_at_breast(stem, m_axes, m_breast_height, m_rules);
     std::stable_sort(found.begin(), found.end(), [](const Found_stem& a, const Found_stem& b) {
       return a.radius > b.radius;
     });
@@ -253,13 +224,37 @@ private:
 
   Found_stem stem_of(Index a, const Vec3& foot, const Lowest_ground& ground) const
   {
-    const Axis& axis = m_axes.axes[a].axis;
-    return {a,
-            none,
-            foot,
-            radius_near(axis, foot, m_rules.root * m_breast_height),
-            radius_at_breast(axis, foot, m_breast_height),
-            ground.height(foot)};
+    Found_stem stem{a, none, foot};
+    stem.radius = radius_near(m_axes.axes[a].axis, foot, m_rules.root * m_breast_height);
+    stem.height = ground.height(foot);
+    return stem;
+  }
+
+  /// Measures the heights of feet above the ground: above the median level of the ground points
+  /// around them, relative to the surface of the ground.
+  void measure_feet(std::vector<Found_stem>& stems) const
+  {
+    if (!m_surface || stems.empty())
+      return;
+    std::vector<Vec3> feet;
+    for (const Found_stem& stem : stems)
+      feet.emplace_back(stem.foot.x(), stem.foot.y(), 0);
+    const neighborhood::Nearest_neighbors search(feet);
+    std::vector<std::vector<double>> levels(stems.size());
+    std::vector<Index> near;
+    for (std::size_t i = 0; i < m_scan.size(); ++i) {
+      if (m_is_used[i] || !m_may_be_ground[i])
+        continue;
+      const Vec3& p = m_scan.points[i];
+      near.clear();
+      search.within(Vec3(p.x(), p.y(), 0), m_rules.ground_around * m_breast_height, near);
+      for (const Index s : near)
+        levels[s].push_back(m_surface->height(p));
+    }
+    for (std::size_t s = 0; s < stems.size(); ++s)
+      if (levels[s].size() >= m_rules.ground_points)
+        stems[s].above_ground =
+            m_surface->height(stems[s].foot) - pcs::internal::lower_median(levels[s]);
   }
 
   /// Marks the points that may lie on a stem or below it. Empty if none is far below a foot, as in
@@ -472,7 +467,8 @@ private:
   const Scan& m_scan;
   const std::vector<std::uint8_t>& m_is_used;
   const std::vector<std::uint8_t>& m_may_be_ground;
-  double m_breast_height; ///< in the unit of the scan
+  const std::optional<Sparse_ground>& m_surface; ///< of the ground, if enough of it is seen
+  double m_breast_height;                        ///< in the unit of the scan
   const Session_options& m_options;
   const Stand_options& m_rules;
   std::vector<std::uint8_t> m_is_solid;
