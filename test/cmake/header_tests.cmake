@@ -86,6 +86,31 @@ pcs_add_header_chains(headers_of_users "^pcs/((IO|core|generators|splats|crowns)
 pcs_add_header_chains(headers_of_stages ".")
 pcs_add_build_test(headers.self_contained headers_of_users long)
 
+# -ffast-math would remove the checks for NaN and infinity. core/errors.h refuses it, and every public function includes
+# that header; the other headers that users include check no values. Without exceptions, `throw` does not compile.
+set(without_checks pcs/concepts.h pcs/Named_function_parameters.h pcs/generators/Hidden_wood.h
+  pcs/generators/Virtual_scan.h)
+foreach(header IN LISTS headers)
+  if(header MATCHES "^pcs/((IO|generators)/)?[^/]*$" AND NOT header IN_LIST without_checks
+      AND NOT "pcs/core/errors.h" IN_LIST reached_from_${header})
+    message(SEND_ERROR "${header} does not include pcs/core/errors.h, which refuses -ffast-math")
+  endif()
+endforeach()
+if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
+  pcs_generate(flags.cpp "#include <pcs/core/parameters/check_value.h>\n")
+  foreach(flag fast-math no-exceptions)
+    string(MAKE_C_IDENTIFIER ${flag} name)
+    add_library(headers_${name} OBJECT EXCLUDE_FROM_ALL ${generated}/flags.cpp)
+    target_link_libraries(headers_${name} PRIVATE pcs::pcs pcs_syntax_flags)
+    target_compile_options(headers_${name} PRIVATE -f${flag} -Wfatal-errors)
+    pcs_add_build_test(headers.${name}_is_refused headers_${name})
+  endforeach()
+  set_tests_properties(headers.fast_math_is_refused PROPERTIES
+    PASS_REGULAR_EXPRESSION "which -ffast-math removes: add -fno-finite-math-only")
+  set_tests_properties(headers.no_exceptions_is_refused PROPERTIES
+    PASS_REGULAR_EXPRESSION "exception handling disabled|exceptions disabled")
+endif()
+
 # The headers outside IO/ reach no CGAL package under the GPL. CGAL's GPL headers include
 # <CGAL/license/...>, which stops the compiler under CGAL_LICENSE_ERROR, unless the macro of
 # a commercial licence is set. The second test proves that the first one can fail.

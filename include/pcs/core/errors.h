@@ -8,6 +8,11 @@
 #include <stdexcept>
 #include <string>
 
+// With -ffast-math, compilers remove std::isnan() and std::isfinite(), hence the checks of values.
+#if defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__
+#error "pcs checks for NaN and infinity, which -ffast-math removes: add -fno-finite-math-only"
+#endif
+
 namespace pcs {
 
 /*!
