@@ -12,7 +12,7 @@ pcs_add_script_test(layers.include_rules check_include_rules.cmake
 pcs_add_script_test(layers.violations_are_detected check_include_rules.cmake
   -D INCLUDE_DIR=${PROJECT_SOURCE_DIR}/test/cmake/bad_includes)
 set_tests_properties(layers.violations_are_detected PROPERTIES
-  PASS_REGULAR_EXPRESSION "14 broken include rules")
+  PASS_REGULAR_EXPRESSION "15 broken include rules")
 
 find_program(PCS_CLANG_FORMAT NAMES clang-format-14 clang-format)
 pcs_add_script_test(format.clang_format check_format.cmake
