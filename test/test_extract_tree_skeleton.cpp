@@ -22,6 +22,7 @@
 #include <limits>
 #include <map>
 #include <random>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -544,6 +545,27 @@ BOOST_AUTO_TEST_CASE(the_callback_sees_progress_and_may_stop)
     const auto report = pcs::extract_tree_skeleton(points, tree, pcs::parameters::callback(stop));
     BOOST_CHECK_EQUAL(report.status, pcs::Status::cancelled);
     BOOST_CHECK_EQUAL(num_vertices(tree), 0u);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(an_exception_of_the_callback_leaves_the_graph_alone)
+{
+  const auto points = cylinder(500, 0.1, 2);
+  Tree full;
+  std::size_t all = 0;
+  const std::function<bool(double)> count = [&](double) { return ++all > 0; };
+  pcs::extract_tree_skeleton(points, full, pcs::parameters::callback(count));
+  for (std::size_t at = all; at > 0; at -= std::min<std::size_t>(at, 7)) { // also the last one
+    std::size_t left = at;
+    const std::function<bool(double)> fail = [&](double) -> bool {
+      if (--left == 0)
+        throw std::range_error("enough");
+      return true;
+    };
+    Tree tree(3);
+    BOOST_CHECK_THROW(pcs::extract_tree_skeleton(points, tree, pcs::parameters::callback(fail)),
+                      std::range_error);
+    BOOST_CHECK_EQUAL(num_vertices(tree), 3u);
   }
 }
 

@@ -288,6 +288,8 @@ public:
         return report;
       }
       Skeleton_report report = m_resampled->report(); // before `tree` changes
+      if (m_callback)
+        m_callback(1); // it may throw
       if (session().report().status == Status::converged)
         internal::write_or_clear(tree, [&] {
           if constexpr (is_ready_made)
@@ -296,8 +298,6 @@ public:
             skeleton::write_graph(session().tree(), session().scan().frame, m_np, tree);
         });
       skeleton::write_points(session(), *m_points, m_np);
-      if (m_callback)
-        m_callback(1);
       return report;
     } else
       return Skeleton_report();
