@@ -24,6 +24,7 @@
 #include <fstream>
 #include <limits>
 #include <set>
+#include <stdexcept>
 #include <unistd.h>
 
 namespace test_Orl_shape_space {
@@ -901,6 +902,44 @@ BOOST_AUTO_TEST_CASE(results_do_not_depend_on_the_number_of_threads)
     });
 }
 
+BOOST_AUTO_TEST_CASE(calls_in_two_threads_give_the_bits_of_calls_alone)
+{
+  const Tree a = random_tree(15), b[2] = {random_tree(16), random_tree(17, 3, 2)};
+  const auto scan_a = tube_points(a, 3000, 1);
+  const std::vector<Point> scan_b[2] = {tube_points(b[0], 3000, 2), tube_points(b[1], 2000, 3)};
+  const auto morph = [&](int k) {
+    Tree tree;
+    std::vector<Point> points;
+    pcs::orl_geodesic(a, scan_a, b[k], scan_b[k], 0.4, tree, points);
+    for (std::size_t v = 0; v < num_vertices(tree); ++v)
+      points.push_back(tree[v].point);
+    return points;
+  };
+  const std::vector<Point> alone[2] = {morph(0), morph(1)};
+  BOOST_TEST((alone[0] != alone[1]));
+  Space space;
+  space.add(a, scan_a);
+  space.add(b[0], scan_b[0]);
+  space.build();
+  std::vector<Point> between;
+  space.points(space.geodesic(0, 1, 0.4), between);
+  const double distance = space.distance(0, 1);
+  for (const bool is_same_input : {false, true}) {
+    std::vector<Point> found[2], of_space[2];
+    double distances[2] = {0, 0};
+    pcs_test::in_two_threads([&](int k) {
+      found[k] = morph(is_same_input ? 0 : k);
+      space.points(space.geodesic(0, 1, 0.4), of_space[k]);
+      distances[k] = space.distance(0, 1);
+    });
+    for (int k = 0; k < 2; ++k) {
+      BOOST_TEST((found[k] == alone[is_same_input ? 0 : k]));
+      BOOST_TEST((of_space[k] == between));
+      BOOST_TEST(distances[k] == distance);
+    }
+  }
+}
+
 BOOST_AUTO_TEST_CASE(correspondences_of_the_previous_version_have_no_confidence)
 {
   const std::string path =
@@ -1295,6 +1334,32 @@ BOOST_AUTO_TEST_CASE(cancelling_leaves_outputs_and_the_space_as_they_were)
       BOOST_TEST((points == std::vector<Point>{Point(7, 7, 7)}));
     } else
       BOOST_TEST(stop == calls); // the last call is at completion
+  }
+}
+
+BOOST_AUTO_TEST_CASE(an_exception_of_the_callback_leaves_the_outputs_alone)
+{
+  const Tree a = random_tree(24, 3, 2), b = random_tree(25, 3, 2);
+  const auto scan = tube_points(a, 300, 1);
+  int calls = 0;
+  Tree ignored;
+  std::vector<Point> ignored_points;
+  pcs::orl_geodesic(a, scan, b, scan, 0.5, ignored, ignored_points, np::callback([&](double) {
+                      return ++calls > 0;
+                    }));
+  for (int stop = calls; stop > 0; stop -= 1 + calls / 8) { // also the last one
+    int count = 0;
+    Tree out(1);
+    std::vector<Point> points{Point(7, 7, 7)};
+    const auto fail = [&](double) -> bool {
+      if (++count == stop)
+        throw std::range_error("enough");
+      return true;
+    };
+    BOOST_CHECK_THROW(pcs::orl_geodesic(a, scan, b, scan, 0.5, out, points, np::callback(fail)),
+                      std::range_error);
+    BOOST_TEST(num_vertices(out) == 1u);
+    BOOST_TEST((points == std::vector<Point>{Point(7, 7, 7)}));
   }
 }
 

@@ -421,6 +421,25 @@ BOOST_AUTO_TEST_CASE(every_number_of_threads_gives_the_same_bits)
   }
 }
 
+BOOST_AUTO_TEST_CASE(calls_in_two_threads_give_the_bits_of_calls_alone)
+{
+  const Bar_edit edits[2] = {Bar_edit(6, 24), Bar_edit(7, 28)};
+  for (const auto samples : both_resolutions) {
+    const Options options = with_samples(samples);
+    const auto run = [&](int k) { return deform(edits[k].points, edits[k].handles, options); };
+    const Deformed alone[2] = {run(0), run(1)};
+    for (const bool is_same_input : {false, true}) {
+      Deformed found[2];
+      pcs_test::in_two_threads([&](int k) { found[k] = run(is_same_input ? 0 : k); });
+      for (int k = 0; k < 2; ++k) {
+        const auto& expected = alone[is_same_input ? 0 : k];
+        BOOST_TEST((found[k].points == expected.points && found[k].normals == expected.normals));
+        BOOST_TEST(found[k].report.energy == expected.report.energy);
+      }
+    }
+  }
+}
+
 BOOST_AUTO_TEST_CASE(the_same_call_gives_the_same_bits)
 {
   const Bar_edit edit;

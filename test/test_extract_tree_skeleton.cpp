@@ -586,6 +586,26 @@ BOOST_AUTO_TEST_CASE(threads_do_not_change_a_bit)
     });
 }
 
+BOOST_AUTO_TEST_CASE(calls_in_two_threads_give_the_bits_of_calls_alone)
+{
+  std::vector<Point> inputs[2];
+  inputs[1] = cylinder(1000, 0.1, 2);
+  const auto& scan = small_scan().scan.points;
+  for (std::size_t i = 0; i < scan.size(); i += 6)
+    inputs[0].push_back(scan[i]);
+  Tree alone[2];
+  for (int k = 0; k < 2; ++k)
+    pcs::extract_tree_skeleton(inputs[k], alone[k]);
+  BOOST_REQUIRE(num_vertices(alone[0]) > num_vertices(alone[1]));
+  for (const bool is_same_input : {false, true}) {
+    Tree found[2];
+    pcs_test::in_two_threads(
+        [&](int k) { pcs::extract_tree_skeleton(inputs[is_same_input ? 0 : k], found[k]); });
+    for (int k = 0; k < 2; ++k)
+      BOOST_CHECK(are_equal(found[k], alone[is_same_input ? 0 : k]));
+  }
+}
+
 BOOST_AUTO_TEST_CASE(the_order_of_the_points_does_not_matter)
 {
   const auto& points = small_scan().scan.points;
@@ -629,20 +649,27 @@ BOOST_AUTO_TEST_CASE(a_translation_moves_the_tree)
 BOOST_AUTO_TEST_CASE(a_scale_scales_the_tree)
 {
   const auto& points = small_scan().scan.points;
-  Tree a, b;
+  Tree a;
   pcs::extract_tree_skeleton(points, a);
-  pcs::extract_tree_skeleton(
-      transformed(points,
-                  [](const Point& p) { return Point(1000 * p.x(), 1000 * p.y(), 1000 * p.z()); }),
-      b,
-      pcs::parameters::breast_height(1300.0));
-  for (std::size_t v = 0; v < num_vertices(b); ++v) {
-    const Point p = b[v].point;
-    b[v].point = Point(p.x() / 1000, p.y() / 1000, p.z() / 1000);
-    b[v].radius /= 1000;
+  for (const double scale : {1e-9, 1e9}) {
+    Tree b;
+    pcs::extract_tree_skeleton(
+        transformed(
+            points,
+            [&](const Point& p) { return Point(scale * p.x(), scale * p.y(), scale * p.z()); }),
+        b,
+        pcs::parameters::breast_height(scale * 1.3));
+    for (std::size_t v = 0; v < num_vertices(b); ++v) {
+      const Point p = b[v].point;
+      b[v].point = Point(p.x() / scale, p.y() / scale, p.z() / scale);
+      b[v].radius /= scale;
+    }
+    BOOST_TEST_CONTEXT("scale " << scale)
+    {
+      BOOST_CHECK_SMALL(distance_between(a, b, 1), rounding);
+      BOOST_CHECK_SMALL(distance_between(b, a, 1), rounding);
+    }
   }
-  BOOST_CHECK_SMALL(distance_between(a, b, 1), rounding);
-  BOOST_CHECK_SMALL(distance_between(b, a, 1), rounding);
 }
 
 namespace {

@@ -6,6 +6,7 @@
 #include <pcs/core/errors.h>
 #include <pcs/extract_tree_skeleton.h>
 #include <pcs/segment_trees.h>
+#include <support/exceptions.h>
 #include <support/threads.h>
 #include <support/tree_clouds.h>
 
@@ -21,6 +22,7 @@
 #include <limits>
 #include <numeric>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -380,6 +382,48 @@ BOOST_AUTO_TEST_CASE(neither_threads_nor_order_change_anything)
   BOOST_TEST(different == 0u);
 }
 
+BOOST_AUTO_TEST_CASE(calls_in_two_threads_give_the_bits_of_calls_alone)
+{
+  const Stand stand = three_trees();
+  Cloud inputs[2] = {{}, pole(0)};
+  for (std::size_t i = 0; i < stand.points.size(); i += 8)
+    inputs[0].push_back(stand.points[i]);
+  Labels alone[2];
+  pcs::Segmentation_report expected[2];
+  for (int k = 0; k < 2; ++k)
+    expected[k] = segment(inputs[k], alone[k]);
+  BOOST_TEST(expected[0].trees.size() == 3u);
+  for (const bool is_same_input : {false, true}) {
+    Labels trees[2];
+    pcs::Segmentation_report reports[2];
+    pcs_test::in_two_threads(
+        [&](int k) { reports[k] = segment(inputs[is_same_input ? 0 : k], trees[k]); });
+    for (int k = 0; k < 2; ++k) {
+      const int of = is_same_input ? 0 : k;
+      BOOST_TEST((trees[k] == alone[of]));
+      BOOST_TEST_REQUIRE(reports[k].trees.size() == expected[of].trees.size());
+      for (std::size_t t = 0; t < reports[k].trees.size(); ++t)
+        BOOST_TEST((reports[k].trees[t].foot == expected[of].trees[t].foot));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(copies_of_points_have_the_tree_of_the_points)
+{
+  const Stand stand = three_trees();
+  Cloud points;
+  for (std::size_t i = 0; i < stand.points.size(); i += 8)
+    points.push_back(stand.points[i]);
+  const std::size_t n = points.size();
+  Labels once, twice;
+  const auto report = segment(points, once);
+  BOOST_TEST_REQUIRE(report.trees.size() == 3u);
+  append(points, Cloud(points));
+  BOOST_TEST(segment(points, twice).trees.size() == 3u);
+  BOOST_TEST((Labels(twice.begin(), twice.begin() + std::ptrdiff_t(n)) == once));
+  BOOST_TEST((Labels(twice.begin() + std::ptrdiff_t(n), twice.end()) == once));
+}
+
 BOOST_AUTO_TEST_CASE(units_and_far_coordinates_do_not_matter)
 {
   const Stand stand = three_trees();
@@ -662,7 +706,9 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused)
   for (const double height : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()})
     BOOST_CHECK_THROW(segment(points, trees, height), pcs::Invalid_input);
   points[7] = Point(0, std::numeric_limits<double>::infinity(), 0);
-  BOOST_CHECK_THROW(segment(points, trees), pcs::Invalid_input);
+  BOOST_CHECK_EXCEPTION(segment(points, trees),
+                        pcs::Invalid_input,
+                        pcs_test::message_has("point 7", "not finite"));
 }
 
 BOOST_AUTO_TEST_CASE(cancelled_work_leaves_the_map_alone)
@@ -699,6 +745,42 @@ BOOST_AUTO_TEST_CASE(cancelled_work_leaves_the_map_alone)
   BOOST_TEST(all > 5);
   for (const int limit : {0, 2, all / 2, all - 1})
     BOOST_TEST((run(limit) == pcs::Status::cancelled));
+}
+
+BOOST_AUTO_TEST_CASE(an_exception_of_the_callback_leaves_the_map_alone)
+{
+  const Cloud points = pole(0);
+  std::vector<std::size_t> indices(points.size());
+  std::iota(indices.begin(), indices.end(), 0);
+  const auto identity = boost::typed_identity_property_map<std::size_t>();
+  int calls = 0;
+  const auto run = [&](int stop) {
+    Labels trees(points.size(), no_tree);
+    calls = 0;
+    const std::function<bool(double)> fail = [&](double) -> bool {
+      if (++calls == stop)
+        throw std::range_error("enough");
+      return true;
+    };
+    const auto segment_all = [&] {
+      pcs::segment_trees(
+          indices,
+          boost::make_iterator_property_map(trees.begin(), identity),
+          pcs::parameters::point_map(boost::make_iterator_property_map(points.begin(), identity))
+              .callback(fail));
+    };
+    if (stop == 0) {
+      segment_all();
+      return;
+    }
+    BOOST_CHECK_THROW(segment_all(), std::range_error);
+    BOOST_TEST(std::count(trees.begin(), trees.end(), no_tree) == std::ptrdiff_t(trees.size()));
+  };
+  run(0);
+  const int all = calls;
+  BOOST_TEST(all > 5);
+  for (int stop = all; stop > 0; stop -= 1 + all / 8) // also the last one
+    run(stop);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -5,6 +5,7 @@
 #include <pcs/extract_tree_skeleton.h>
 #include <pcs/generators/tree_fixtures.h>
 #include <support/drawn.h>
+#include <support/exceptions.h>
 #include <support/tree_clouds.h>
 
 #include <CGAL/squared_distance_3.h>
@@ -87,7 +88,9 @@ BOOST_AUTO_TEST_CASE(values_that_are_no_numbers_are_refused)
   for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity(), 1e200}) {
     Cloud points = cylinder(100, 0.1, 1);
     points[50] = Point(0, bad, 0);
-    BOOST_CHECK_THROW(pcs::extract_tree_skeleton(points, tree), pcs::Invalid_input);
+    BOOST_CHECK_EXCEPTION(pcs::extract_tree_skeleton(points, tree),
+                          pcs::Invalid_input,
+                          pcs_test::message_has("point 50", "not finite"));
   }
   const auto points = cylinder(100, 0.1, 1);
   BOOST_CHECK_THROW(

@@ -201,6 +201,24 @@ BOOST_AUTO_TEST_CASE(results_are_bitwise_equal_for_all_numbers_of_threads)
     });
 }
 
+BOOST_AUTO_TEST_CASE(calls_in_two_threads_give_the_bits_of_calls_alone)
+{
+  const Points rest[2] = {pcs_test::star(600, 0), pcs_test::star(800, 2)};
+  const Points target = pcs_test::bend(pcs_test::star(700, 1), curvature);
+  const auto fit = [&](int k) {
+    Points source = rest[k];
+    pcs::fit_point_set(source, target, P::number_of_iterations(3));
+    return source;
+  };
+  const Points alone[2] = {fit(0), fit(1)};
+  for (const bool is_same_input : {false, true}) {
+    Points found[2];
+    pcs_test::in_two_threads([&](int k) { found[k] = fit(is_same_input ? 0 : k); });
+    for (int k = 0; k < 2; ++k)
+      BOOST_TEST((found[k] == alone[is_same_input ? 0 : k]));
+  }
+}
+
 BOOST_AUTO_TEST_CASE(normals_follow_and_keep_their_length)
 {
   Points points = pcs_test::star(2000, 0);

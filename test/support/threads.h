@@ -12,6 +12,8 @@
 #include <tbb/task_arena.h>
 #endif
 
+#include <thread>
+
 namespace pcs_test {
 
 /// Without TBB, runs the function directly. More threads than cores are possible, since races also
@@ -28,6 +30,15 @@ void with_threads(int number_of_threads, const Work& work)
   static_cast<void>(number_of_threads);
   work();
 #endif
+}
+
+/// Calls `work(0)` and `work(1)` at the same time, in two threads.
+template <class Work>
+void in_two_threads(const Work& work)
+{
+  std::thread other([&] { work(1); });
+  work(0);
+  other.join();
 }
 
 constexpr int thread_counts[] = {1, 2, 3, 8};
