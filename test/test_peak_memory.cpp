@@ -11,6 +11,7 @@
 #include <support/allocations.h>
 
 #include <CGAL/Simple_cartesian.h>
+#include <CGAL/property_map.h>
 #include <CGAL/tags.h>
 
 #include <boost/test/unit_test.hpp>
@@ -19,6 +20,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace test_peak_memory {
@@ -50,6 +52,19 @@ std::vector<Point> scan_of(const Tree& tree, double degrees)
   return scan.points;
 }
 
+/// A trunk of radius 1.
+Tree post(double height)
+{
+  Tree tree(3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    tree[i].point = Point(0, 0, height * double(i) / 2);
+    tree[i].radius = 1;
+  }
+  add_edge(0, 1, tree);
+  add_edge(1, 2, tree);
+  return tree;
+}
+
 Tree tree_of(std::uint64_t seed)
 {
   Tree tree;
@@ -77,18 +92,22 @@ double peak(std::size_t number_of_points, const Work& work)
 // Sequential, since a thread scheduler allocates memory as well.
 BOOST_AUTO_TEST_SUITE(peak_memory)
 
-BOOST_AUTO_TEST_CASE(a_session_of_deformation)
+BOOST_AUTO_TEST_CASE(memory_of_a_deformation)
 {
   constexpr std::size_t n = 200000;
-  std::vector<Point> points = pillar(n);
+  using Element = std::pair<Point, Kernel::Vector_3>;
+  std::vector<Element> points;
+  for (const Point& p : pillar(n))
+    points.emplace_back(p, Kernel::Vector_3(p.x(), p.y(), 0));
   const std::vector<std::size_t> foot = {0, 1, 2, 3};
+  const auto np = pcs::parameters::point_map(CGAL::First_of_pair_property_map<Element>())
+                      .normal_map(CGAL::Second_of_pair_property_map<Element>());
   const long before = pcs_test::allocated_bytes;
   double kept = 0;
   const double most = peak(n, [&] {
-    using Session = pcs::Point_set_deformation<std::vector<Point>,
-                                               pcs::parameters::Default_named_parameters,
-                                               CGAL::Sequential_tag>;
-    Session session(points);
+    pcs::Point_set_deformation<std::vector<Element>, decltype(np), CGAL::Sequential_tag> session(
+        points,
+        np);
     kept = double(pcs_test::allocated_bytes - before) / double(n);
     session.add_handle(foot);
     session.deform();
@@ -98,7 +117,7 @@ BOOST_AUTO_TEST_CASE(a_session_of_deformation)
   BOOST_TEST(most < 325);
 }
 
-BOOST_AUTO_TEST_CASE(a_session_without_sampling)
+BOOST_AUTO_TEST_CASE(memory_of_a_deformation_without_sampling)
 {
   constexpr std::size_t n = 100000;
   std::vector<Point> points = pillar(n);
@@ -119,7 +138,7 @@ BOOST_AUTO_TEST_CASE(a_session_without_sampling)
   BOOST_TEST(most < most_without_sampling);
 }
 
-BOOST_AUTO_TEST_CASE(a_skeleton)
+BOOST_AUTO_TEST_CASE(memory_of_a_skeleton)
 {
   const std::vector<Point> scan = scan_of(tree_of(1), 0.08);
   BOOST_TEST_REQUIRE(scan.size() > 100000u);
@@ -129,7 +148,7 @@ BOOST_AUTO_TEST_CASE(a_skeleton)
              }) < 350);
 }
 
-BOOST_AUTO_TEST_CASE(a_registration)
+BOOST_AUTO_TEST_CASE(memory_of_a_registration)
 {
   const std::vector<Point> rest = pillar(50000);
   std::vector<Point> target;
@@ -145,17 +164,35 @@ BOOST_AUTO_TEST_CASE(a_registration)
              }) < 700);
 }
 
-BOOST_AUTO_TEST_CASE(a_geodesic)
+// Trees of one branch, so that nearly all memory is that of points.
+BOOST_AUTO_TEST_CASE(memory_of_a_geodesic)
+{
+  constexpr std::size_t n = 50000;
+  const std::vector<Point> one = pillar(n);
+  std::vector<Point> two;
+  for (const Point& p : one)
+    two.emplace_back(p.x(), p.y(), 1.2 * p.z());
+  BOOST_TEST(
+      peak(2 * n, [&] {
+        Tree between;
+        std::vector<Point> points;
+        pcs::orl_geodesic<CGAL::Sequential_tag>(post(10), one, post(12), two, 0.5, between, points);
+      }) < 120);
+}
+
+BOOST_AUTO_TEST_CASE(memory_of_a_matching)
 {
   const Tree a = tree_of(1), b = tree_of(2);
-  const std::vector<Point> one = scan_of(a, 0.1), two = scan_of(b, 0.1);
-  const std::size_t n = one.size() + two.size();
-  BOOST_TEST_REQUIRE(n > 100000u);
-  BOOST_TEST(peak(n, [&] {
-               Tree between;
-               std::vector<Point> points;
-               pcs::orl_geodesic<CGAL::Sequential_tag>(a, one, b, two, 0.5, between, points);
-             }) < 500);
+  pcs::Orl_shape_space<Kernel, CGAL::Sequential_tag> space;
+  pcs::Orl_report report;
+  const double bytes = peak(1, [&] {
+    space.add_skeleton(a);
+    space.add_skeleton(b);
+    report = space.build();
+  });
+  BOOST_TEST_MESSAGE(report.number_of_branches[0] << ", " << report.number_of_branches[1]
+                                                  << " branches");
+  BOOST_TEST(bytes < 80e6);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -52,7 +52,7 @@ std::vector<Point> two_trees()
 
 BOOST_AUTO_TEST_SUITE(stand_allocation)
 
-BOOST_AUTO_TEST_CASE(a_stand_needs_at_most_250_bytes_per_point_beside_the_input)
+BOOST_AUTO_TEST_CASE(memory_of_a_stand)
 {
   const std::vector<Point> points = two_trees();
   const std::size_t n = points.size();

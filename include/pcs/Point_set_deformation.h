@@ -56,9 +56,9 @@ namespace pcs {
 
   \par Memory
   The object needs about 175 bytes per point with normals, 24 fewer with coordinates in single
-  precision, and about 325 at the peak of the construction. After the first frames, `deform()`
-  allocates nothing with at most 65,536 samples; with more, it frees part of its memory after
-  each frame.
+  precision, and about 325 at the peak of the construction. If all points are samples, it needs
+  750 to 1,500. After the first frames, `deform()` allocates nothing with at most 65,536 samples;
+  with more, it frees part of its memory after each frame.
 
   \par Thread safety and determinism
   Different objects may be used concurrently, but each object only by one thread at a time. Results
