@@ -1,9 +1,9 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Height above the ground of a stand: above its surface where enough of it is seen, otherwise above
-// a bound from the lowest points q of a horizontal grid and a largest slope s,
+// Height above the ground of a stand: above the higher of its surface, if enough of it is seen, and
+// of a bound from the lowest points q of a horizontal grid and a largest slope s,
 //
-//   ground(p) = min over q of  z_q + s |p - q|, with the horizontal distance.
+//   bound(p) = min over q of  z_q + s |p - q|, with the horizontal distance.
 
 #ifndef PCS_SKELETON_FOREST_LOWEST_GROUND_H
 #define PCS_SKELETON_FOREST_LOWEST_GROUND_H
@@ -58,9 +58,7 @@ public:
     double ground = std::numeric_limits<double>::infinity();
     for (const Vec3& q : m_lowest)
       ground = std::min(ground, q.z() + m_slope * std::hypot(p.x() - q.x(), p.y() - q.y()));
-    const double height = p.z() - ground;
-    const double above = m_surface ? m_surface->height(p) : height;
-    return std::isfinite(above) ? above : height;
+    return m_surface ? std::min(p.z() - ground, m_surface->height(p)) : p.z() - ground;
   }
 
 private:

@@ -61,8 +61,8 @@ struct Ground_view
 
 /*!
   Returns the points that are left after the removal of clutter. If no ground was found, the points
-  of a sparse ground are removed, too; otherwise, stray points far below the ground. Stray points may
-  not show ground if more points lie on it without them: stray points below the ground hide it.
+  of a sparse ground are removed, too; otherwise, stray points far below the ground. Stray points
+  may not show ground if more points lie on it without them: they hide it below.
 */
 template <class ConcurrencyTag>
 Ground_view view_ground(const Session<ConcurrencyTag>& session, double breast_height)

@@ -251,10 +251,13 @@ private:
       for (const Index s : near)
         levels[s].push_back(m_surface->height(p));
     }
-    for (std::size_t s = 0; s < stems.size(); ++s)
-      if (levels[s].size() >= m_rules.ground_points)
-        stems[s].above_ground =
-            m_surface->height(stems[s].foot) - pcs::internal::lower_median(levels[s]);
+    for (std::size_t s = 0; s < stems.size(); ++s) {
+      if (levels[s].size() < m_rules.ground_points)
+        continue;
+      Found_stem& stem = stems[s];
+      stem.above_ground = m_surface->height(stem.foot) - pcs::internal::lower_median(levels[s]);
+      stem.height = std::max(0.0, stem.above_ground);
+    }
   }
 
   /// Marks the points that may lie on a stem or below it. Empty if none is far below a foot, as in
