@@ -35,11 +35,14 @@ public:
   std::vector<Index> root; ///< lowest points
 
   /// `number_of_points` is the number on the inner part of the limb. They lie up to `depth` radii
-  /// below its surface.
-  Limb(std::size_t number_of_points, double depth)
+  /// below its surface. If `is_forked`, a second limb begins where the points become dense.
+  Limb(std::size_t number_of_points, double depth, bool is_forked = false)
   {
+    const Vec3 fork = inner * m_along + m_seat, tip = fork + (outer - inner) * Vec3(0.6, 0, 0.8);
     add_tube(0, Vec3::Zero(), Vec3(0, 0, 2), trunk_radius);
-    add_tube(1, inner * m_along + m_seat, outer * m_along + m_seat, limb_radius);
+    add_tube(1, fork, outer * m_along + m_seat, limb_radius);
+    if (is_forked)
+      add_tube(2, fork, tip, limb_radius);
     add_few(number_of_points, depth);
     prepare_scan<CGAL::Sequential_tag>(m_points, Vec3::UnitZ(), scan);
     std::fill(scan.is_outlier.begin(), scan.is_outlier.end(), std::uint8_t(0));
@@ -47,7 +50,9 @@ public:
     set.axis_of_point.assign(scan.size(), none);
     set.segment_of_point.assign(scan.size(), none);
     add_axis(Vec3::Zero(), Vec3(0, 0, 2), trunk_radius);
-    add_axis(inner * m_along + m_seat, outer * m_along + m_seat, limb_radius);
+    add_axis(fork, outer * m_along + m_seat, limb_radius);
+    if (is_forked)
+      add_axis(fork, tip, limb_radius);
     for (std::size_t k = 0; k < m_points.size(); ++k) {
       const Index i = scan.point_of_input[k];
       set.axis_of_point[i] = m_axis[k];
@@ -64,6 +69,26 @@ public:
   Followed_ends follow()
   {
     return follow_thick_ends(scan, Chain_options(), Thick_end_options(), root, set);
+  }
+  /// Makes one axis of both limbs, which narrows to both tips.
+  void join_branches()
+  {
+    Axis& axis = set.axes[1].axis;
+    Axis& other = set.axes[2].axis;
+    const std::size_t shift = other.size() - 1;
+    for (Axis* branch : {&axis, &other})
+      for (std::size_t k = 0; k < branch->size(); ++k)
+        (*branch)[k].radius *= 1 - 0.4 * double(k) / double(branch->size());
+    for (std::size_t i = 0; i < scan.size(); ++i)
+      if (set.axis_of_point[i] == 1)
+        set.segment_of_point[i] += static_cast<Index>(shift);
+      else if (set.axis_of_point[i] == 2) {
+        set.axis_of_point[i] = 1;
+        set.segment_of_point[i] = static_cast<Index>(shift - 1) - set.segment_of_point[i];
+      }
+    axis.insert(axis.begin(), other.rbegin(), other.rend() - 1);
+    set.axes[1].number_of_points += set.axes[2].number_of_points;
+    set.axes.pop_back();
   }
   Vec3 seat() const { return scan.frame.to_local(m_seat); }
 
@@ -132,6 +157,49 @@ BOOST_AUTO_TEST_CASE(a_thick_limb_with_few_points_is_continued_to_its_trunk)
   }
   const auto open = std::count(limb.set.axis_of_point.begin(), limb.set.axis_of_point.end(), none);
   BOOST_TEST(open <= 7); // beside the trunk
+}
+
+BOOST_AUTO_TEST_CASE(a_straight_limb_needs_few_points)
+{
+  // 100 points per square metre: pieces of eight radii have six points, too few for a piece.
+  Limb limb(18, 0);
+  const Followed_ends found = limb.follow();
+  BOOST_TEST(found.number_of_ends == 1u);
+  BOOST_TEST(found.number_of_unexplained_points == 0u);
+  const Axis& axis = limb.set.axes[1].axis;
+  const double unit = limb.scan.frame.unit;
+  BOOST_TEST((axis.front().point - limb.seat()).norm() * unit < trunk_radius + limb_radius);
+}
+
+BOOST_AUTO_TEST_CASE(two_loose_branches_do_not_hold_each_other)
+{
+  Limb limb(70, 0, true);
+  const Followed_ends found = limb.follow();
+  BOOST_TEST(found.number_of_ends == 1u); // the other branch lies on the continued one
+  BOOST_TEST(found.number_of_unexplained_points == 0u);
+  BOOST_REQUIRE(limb.set.axes.size() == 3u);
+  const double unit = limb.scan.frame.unit;
+  const auto gap = [&](std::size_t a) {
+    return (limb.set.axes[a].axis.front().point - limb.seat()).norm() * unit;
+  };
+  BOOST_TEST(std::min(gap(1), gap(2)) < trunk_radius + limb_radius);
+  Limb open(140, 1, true); // no hollow interior
+  BOOST_TEST(open.follow().number_of_unexplained_points > 30u);
+}
+
+BOOST_AUTO_TEST_CASE(an_axis_across_a_fork_is_continued_from_its_lowest_place)
+{
+  Limb limb(70, 0, true);
+  limb.join_branches();
+  const Followed_ends found = limb.follow();
+  BOOST_TEST(found.number_of_ends == 1u);
+  BOOST_TEST(found.number_of_unexplained_points == 0u);
+  BOOST_REQUIRE(limb.set.axes.size() == 3u);
+  const double unit = limb.scan.frame.unit;
+  const Vec3 seat = limb.seat(), base = limb.set.axes[1].axis.front().point;
+  BOOST_TEST((base - seat).norm() * unit < trunk_radius + limb_radius);
+  BOOST_TEST((limb.set.axes[2].axis.front().point - seat).norm() * unit < inner + 4 * limb_radius);
+  BOOST_TEST(limb.set.axes[2].number_of_points > 100u);
 }
 
 BOOST_AUTO_TEST_CASE(points_inside_are_no_wood_and_are_counted)

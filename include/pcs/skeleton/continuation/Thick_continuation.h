@@ -47,7 +47,21 @@ struct Thick_end_options
   double released = 0.6; ///< axes below this radius may lose their points ...
   double small = 0.1; ///< ... and axes with fewer points, as a fraction of the continued axis [-]
   double lost = 0.5;  ///< axes that lose a larger fraction of their points are dropped [-]
-  double loose = 8;   ///< distance within which a loose base has no wood of similar thickness
+  double narrowed = 0.75;   ///< bases below this fraction of the steady radius are no bases [-]
+  double crest = 0.97;      ///< the thickest place has this fraction of the steady radius [-]
+  double taper = 0.03;      ///< largest change of the radius per length of a branch [-]
+  double corner = 3;        ///< length without nodes beside the corner of a fork
+  double longest = 35;      ///< longest tube
+  double widest_turn = 1.1; ///< largest angle between a base and the tube to its target [rad]
+  double widest_gap = 6;    ///< longest stretch of a continuation without points
+  double loose = 8;         ///< distance within which a loose base has no wood of similar thickness
+};
+
+/// Place at which a continuation may end.
+struct Thick_target
+{
+  Vec3 point;
+  double radius; ///< of the axis there [L]
 };
 
 /// How a continuation is searched.
@@ -77,6 +91,12 @@ struct Thick_trial
   - they cover at least the fraction `sectors` of the `12 (1 - (11 / 12)^on)` sectors that random
     points would cover;
   - length and radius are within the bounds of `Thick_end_options`.
+
+  A tube to a target, which is a place on another axis, follows a parabola. Its radius changes
+  linearly. Its score is the sum above, less `10 b` for a bend by `b` lengths of its chord. It is
+  fitted and kept in the same way; in addition, no stretch longer than `widest_gap` is without
+  points on the surface, up to the radius of the target. Few points per length are then sufficient
+  on straight limbs.
 */
 class Thick_continuation
 {
@@ -94,9 +114,7 @@ public:
   bool extend(const std::vector<Index>& near, double length, bool does_radius_change, Axis& line)
   {
     const Axis_node end = line.back();
-    std::size_t first = line.size() - 1; // of the tail
-    while (first > 0 && (line[first].point - end.point).norm() < m_rules.piece * end.radius)
-      --first;
+    const std::size_t first = first_of_tail(line);
     const Vec3 along = (end.point - line[first].point).normalized();
     Axis trial(line.begin() + static_cast<std::ptrdiff_t>(first), line.end());
     const std::size_t seam = trial.size() - 1;
@@ -120,7 +138,145 @@ public:
     return true;
   }
 
+  /// Adds a tube from the end of `line` to one of the `targets` if the points `near` support it
+  /// along its whole length. Returns whether it was added.
+  bool connect(const std::vector<Index>& near, const std::vector<Thick_target>& targets, Axis& line)
+  {
+    const Axis_node end = line.back();
+    const std::size_t first = first_of_tail(line);
+    const Bent_tube tube = best_tube(end, targets, near);
+    if (!(tube.score > 0))
+      return false;
+    Axis trial(line.begin() + static_cast<std::ptrdiff_t>(first), line.end());
+    const std::size_t seam = trial.size() - 1;
+    Axis_node last = end;
+    last.point = tube.target.point;
+    last.radius = tube.radius;
+    append(last, (last.point - end.point).norm(), trial);
+    for (std::size_t k = seam + 1; k < trial.size(); ++k) {
+      const double t = double(k - seam) / double(trial.size() - 1 - seam);
+      trial[k].point += 4 * t * (1 - t) * tube.bend;
+      trial[k].radius = (1 - t) * end.radius + t * tube.radius;
+    }
+    Axis_fit fit(trial, Fit_model::of(m_scan.spacing, m_noise));
+    if (!run(near, fit) || !(supported_end(fit, seam) > double(seam)))
+      return false;
+    const Axis& longer = fit.axis();
+    if (widest_gap(fit, seam, tube.target) > m_rules.widest_gap * end.radius ||
+        (longer.back().point - tube.target.point).norm() > tube.target.radius + end.radius)
+      return false;
+    for (std::size_t k = seam; k < longer.size(); ++k)
+      if (longer[k].radius < m_rules.thinner * end.radius ||
+          longer[k].radius > m_rules.widest * end.radius)
+        return false;
+    line.resize(first);
+    line.insert(line.end(), longer.begin(), longer.end());
+    return true;
+  }
+
 private:
+  /// Tube along a parabola.
+  struct Bent_tube
+  {
+    double score = 0;
+    double radius = 0;        ///< at the target [L]
+    Vec3 bend = Vec3::Zero(); ///< offset of its middle from the chord [L]
+    Thick_target target{Vec3::Zero(), 0};
+  };
+
+  /// Returns the first node of the part of a line that is fitted again.
+  std::size_t first_of_tail(const Axis& line) const
+  {
+    const Axis_node& end = line.back();
+    std::size_t first = line.size() - 1;
+    while (first > 0 && (line[first].point - end.point).norm() < m_rules.piece * end.radius)
+      --first;
+    return first;
+  }
+
+  /// Returns the score of a bent tube, without the terms for bends and radii.
+  double score_of(const Axis_node& end, const Bent_tube& tube, const std::vector<Index>& near) const
+  {
+    const Vec3 chord = tube.target.point - end.point;
+    const double length = chord.norm();
+    const Vec3 d = chord / length;
+    double score = 0;
+    for (const Index i : near) {
+      const Vec3 v = m_scan.points[i] - end.point;
+      const double t = v.dot(d) / length;
+      if (t < 0 || t > 1)
+        continue;
+      const double r = (1 - t) * end.radius + t * tube.radius;
+      const double x =
+          ((v - t * chord - 4 * t * (1 - t) * tube.bend).norm() / r - 1) / m_rules.band;
+      score += std::abs(x) < 1 ? 1 - std::abs(x) : x < 0 ? -2 : 0;
+    }
+    return score;
+  }
+
+  /// Returns the tube of the largest score. Its score is 0 if there is none.
+  Bent_tube best_tube(const Axis_node& end,
+                      const std::vector<Thick_target>& targets,
+                      const std::vector<Index>& near) const
+  {
+    std::vector<Bent_tube> tubes;
+    for (const Thick_target& target : targets)
+      for (const double ratio : {1.0, 1.25, 1.5}) {
+        Bent_tube tube;
+        tube.target = target;
+        tube.radius = ratio * end.radius;
+        tube.score = score_of(end, tube, near) - 2 * (ratio - 1);
+        tubes.push_back(tube);
+      }
+    std::stable_sort(tubes.begin(), tubes.end(), [](const Bent_tube& a, const Bent_tube& b) {
+      return a.score > b.score;
+    });
+    constexpr std::size_t most = 16;
+    tubes.resize(std::min(most, tubes.size()));
+    Bent_tube best;
+    for (const Bent_tube& straight : tubes) {
+      if (straight.score > best.score)
+        best = straight;
+      const Vec3 chord = straight.target.point - end.point;
+      const double length = chord.norm();
+      const Vec3 e1 = chord.unitOrthogonal(), e2 = chord.cross(e1).normalized();
+      for (const double share : {0.03, 0.06, 0.1, 0.15})
+        for (int k = 0; k < 8; ++k) {
+          const double turn = 2 * pcs::internal::pi * k / 8;
+          Bent_tube tube = straight;
+          tube.bend = share * length * (std::cos(turn) * e1 + std::sin(turn) * e2);
+          tube.score =
+              score_of(end, tube, near) - 2 * (straight.radius / end.radius - 1) - 10 * share;
+          if (tube.score > best.score)
+            best = tube;
+        }
+    }
+    return best;
+  }
+
+  /// Returns the longest stretch beyond `seam` without points on the surface [L].
+  double widest_gap(const Axis_fit& fit, std::size_t seam, const Thick_target& target) const
+  {
+    const Axis& axis = fit.axis();
+    std::vector<double> at(axis.size(), 0); // lengths beyond the seam [L]
+    for (std::size_t k = seam + 1; k < axis.size(); ++k)
+      at[k] = at[k - 1] + (axis[k].point - axis[k - 1].point).norm();
+    std::vector<double> seen{0, std::max(0.0, at.back() - target.radius)};
+    for (const Axis_place& p : fit.places()) {
+      if (p.segment < seam || p.share < 0 || p.share > 1)
+        continue;
+      const double r = radius_at(axis, p);
+      if (std::abs(p.distance - r) <=
+          std::max(m_chains.filled_noise * m_noise, m_chains.filled_depth * r))
+        seen.push_back((1 - p.share) * at[p.segment] + p.share * at[p.segment + 1]);
+    }
+    std::sort(seen.begin(), seen.end());
+    double widest = 0;
+    for (std::size_t k = 1; k < seen.size(); ++k)
+      widest = std::max(widest, seen[k] - seen[k - 1]);
+    return widest;
+  }
+
   /// Returns the score of a straight tube from `base` along `d` (see above).
   double score_of(const Vec3& base,
                   const Vec3& d,

@@ -8,11 +8,14 @@
 #include <pcs/skeleton/axes/Chain_options.h>
 #include <pcs/skeleton/axes/remove_axes.h>
 #include <pcs/skeleton/continuation/Thick_continuation.h>
+#include <pcs/skeleton/continuation/thick_line.h>
 #include <pcs/skeleton/model/Axis_set.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -21,7 +24,7 @@ namespace skeleton {
 
 namespace internal {
 
-/// Continues the bases of thick axes.
+/// Continues the bases of thick axes that are not held, see `follow_thick_ends()`.
 class Thick_end_follower
 {
 public:
@@ -38,77 +41,40 @@ public:
       m_set(set),
       m_thinnest(std::max(rules.thinnest * scan.spacing, rules.noise * set.noise)),
       m_lost(set.axes.size(), 0),
-      m_points(set.axes.size())
+      m_points(set.axes.size()),
+      m_is_held(set.axes.size(), 0),
+      m_bases(set.axes.size())
   {
     for (Index i = 0; i < scan.size(); ++i)
       if (set.is_covered(i))
         m_points[set.axis_of_point[i]].push_back(i);
-  }
-
-  /// Returns the axes that may have thick bases, thickest first.
-  std::vector<Index> thick_axes() const
-  {
-    std::vector<std::pair<double, Index>> thick; // negative radius, axis
-    for (Index a = 0; a < m_set.axes.size(); ++a) {
-      double radius = 0;
-      for (const Axis_node& node : m_set.axes[a].axis)
-        radius = std::max(radius, node.radius);
-      if (radius >= m_thinnest)
-        thick.emplace_back(-radius, a);
+    find_thick_axes();
+    for (const Index a : m_thick) {
+      measure(a);
+      m_is_held[a] = is_at_root(a);
     }
-    std::sort(thick.begin(), thick.end());
-    std::vector<Index> axes;
-    for (const auto& t : thick)
-      axes.push_back(t.second);
-    return axes;
+    hold_more();
   }
 
-  /// Continues the base of axis `a` up to another axis or the root. Returns whether this succeeded.
-  bool follow(Index a)
+  /// Continues all bases that are not held, thickest first. Returns the number of those that
+  /// succeeded.
+  std::size_t follow_all()
   {
-    const Axis line = line_to_base(a);
-    if (line.empty() || is_joined(a, line.back()))
-      return false;
-    const double thickest = m_rules.widest * line.back().radius;
-    const double least = length_of(line) + m_rules.least * line.back().radius;
-    for (const Thick_trial& trial :
-         {Thick_trial{1, 2, false}, {1, 2, true}, {2, 1, false}, {2, 1, true}}) {
-      Axis longer = line;
-      bool is_end_joined = false;
-      for (int k = 0; k < m_rules.most_pieces && !is_end_joined; ++k) {
-        if (!extend(a, trial, longer) || longer.back().radius > thickest)
-          break;
-        is_end_joined = is_joined(a, longer.back());
-      }
-      if (!is_end_joined || length_of(longer) < least)
-        continue;
-      std::reverse(longer.begin(), longer.end());
-      replace(a, std::move(longer));
-      return true;
-    }
-    return false;
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < m_thick.size(); ++k) // `follow()` appends axes
+      count += !m_is_held[m_thick[k]] && follow(m_thick[k]);
+    return count;
   }
 
-  /// Marks the unexplained points around the base of axis `a` if no wood of similar thickness is
-  /// near: a part of a thick branch is missing there.
-  void mark_unexplained(Index a, std::vector<std::uint8_t>& is_marked) const
+  /// Returns the number of points around bases that are not held, which do not belong to wood of
+  /// similar thickness [count]. Bases with fewer than `fewest` of them do not count.
+  std::size_t count_unexplained() const
   {
-    const Axis line = line_to_base(a);
-    if (line.empty())
-      return;
-    const Axis_node& end = line.back();
-    std::vector<Index> near, open;
-    m_scan.search->append_within(end.point, m_rules.loose * end.radius, near);
-    for (const Index i : near)
-      if (m_set.is_covered(i)) {
-        if (is_similar(a, end.radius, i))
-          return;
-      } else if (!m_scan.is_outlier[i])
-        open.push_back(i);
-    if (open.size() < m_rules.fewest || is_joined(a, end))
-      return;
-    for (const Index i : open)
-      is_marked[i] = 1;
+    std::vector<std::uint8_t> is_marked(m_scan.size(), 0);
+    for (const Index a : m_thick)
+      if (!m_is_held[a])
+        mark_unexplained(a, is_marked);
+    return static_cast<std::size_t>(std::count(is_marked.begin(), is_marked.end(), 1));
   }
 
   /// Drops the axes that lost most of their points.
@@ -124,6 +90,184 @@ public:
   }
 
 private:
+  /// Base of an axis, and a ball around the whole axis.
+  struct Base
+  {
+    Axis_node node;
+    Vec3 along;        ///< direction beyond the base
+    Vec3 center;       ///< of the ball
+    double extent = 0; ///< radius of the ball [L]
+  };
+
+  /// Finds the axes that may have thick bases, thickest first.
+  void find_thick_axes()
+  {
+    std::vector<std::pair<double, Index>> thick; // negative radius, axis
+    for (Index a = 0; a < m_set.axes.size(); ++a) {
+      double radius = 0;
+      for (const Axis_node& node : m_set.axes[a].axis)
+        radius = std::max(radius, node.radius);
+      if (radius >= m_thinnest)
+        thick.emplace_back(-radius, a);
+    }
+    std::sort(thick.begin(), thick.end());
+    for (const auto& t : thick)
+      m_thick.push_back(t.second);
+  }
+  Thick_line line_of(Index a) const
+  {
+    return line_to_base(m_set.axes[a].axis, m_thinnest, m_chains, m_rules);
+  }
+  Vec3 direction_of(const Axis& line) const
+  {
+    return Thick_line::direction_of(line, m_rules.piece * line.back().radius);
+  }
+  void measure(Index a)
+  {
+    const Axis& axis = m_set.axes[a].axis;
+    Axis line = line_of(a).nodes;
+    if (line.empty())
+      line.assign(axis.rbegin(), axis.rend());
+    Base& base = m_bases[a];
+    base.node = line.back();
+    base.along = direction_of(line);
+    base.center = 0.5 * (axis.front().point + axis.back().point);
+    base.extent = 0;
+    for (const Axis_node& node : axis)
+      base.extent = std::max(base.extent, (node.point - base.center).norm() + node.radius);
+  }
+
+  bool is_at_root(Index a) const
+  {
+    const Axis& axis = m_set.axes[a].axis;
+    return std::any_of(m_root.begin(), m_root.end(), [&](Index i) {
+      const Axis_place place = nearest_place(axis, m_scan.points[i]);
+      return place.distance < m_rules.at_root * radius_at(axis, place);
+    });
+  }
+  /// Holds all axes whose bases lie on held axes.
+  void hold_more()
+  {
+    for (bool is_changed = true; is_changed;) {
+      is_changed = false;
+      for (const Index a : m_thick)
+        if (!m_is_held[a] && is_base_held(a)) {
+          m_is_held[a] = 1;
+          is_changed = true;
+        }
+    }
+  }
+  bool is_base_held(Index a) const
+  {
+    const Base& base = m_bases[a];
+    const Axis_node& front = m_set.axes[a].axis.front();
+    return is_on_held(a, base.node, base.along) ||
+           (front.radius > m_rules.touched * base.node.radius && is_on_held(a, front, base.along));
+  }
+  /// Returns whether the end of axis `a` lies on a held axis of similar thickness, or is separated
+  /// from it by a short gap along the direction `along`.
+  bool is_on_held(Index a, const Axis_node& end, const Vec3& along) const
+  {
+    return std::any_of(m_thick.begin(), m_thick.end(), [&](Index b) {
+      if (b == a || !is_held_within(b, end, m_rules.least))
+        return false;
+      const Axis& axis = m_set.axes[b].axis;
+      const Axis_place place = nearest_place(axis, end.point);
+      const double radius = radius_at(axis, place), gap = place.distance - radius;
+      const Vec3 d = point_at(axis, place) - end.point;
+      return radius >= m_rules.touched * end.radius &&
+             (gap < m_rules.touch * end.radius ||
+              (gap < m_rules.least * end.radius && is_ahead(d, along)));
+    });
+  }
+  bool is_held_within(Index b, const Axis_node& end, double radii) const
+  {
+    const double reach = m_bases[b].extent + radii * end.radius;
+    return m_is_held[b] && (m_bases[b].center - end.point).squaredNorm() <= reach * reach;
+  }
+  bool is_ahead(const Vec3& d, const Vec3& along) const
+  {
+    return d.dot(along) > std::cos(m_rules.widest_turn) * d.norm();
+  }
+
+  /// Continues the base of axis `a` up to a held axis. Returns whether this succeeded.
+  bool follow(Index a)
+  {
+    const Thick_line line = line_of(a);
+    if (line.nodes.empty())
+      return false;
+    Axis longer = line.nodes;
+    bool is_done = connect(a, line, longer);
+    for (const Thick_trial& trial :
+         {Thick_trial{1, 2, false}, {1, 2, true}, {2, 1, false}, {2, 1, true}}) {
+      if (is_done)
+        break;
+      longer = line.nodes;
+      is_done = extend_and_connect(a, line, trial, longer);
+    }
+    if (is_done)
+      accept(a, line, std::move(longer));
+    return is_done;
+  }
+  /// Adds pieces to `longer` until it lies on a held axis or a tube leads to one.
+  bool
+  extend_and_connect(Index a, const Thick_line& line, const Thick_trial& trial, Axis& longer) const
+  {
+    const double thickest = m_rules.widest * longer.back().radius;
+    for (int k = 0; k < m_rules.most_pieces; ++k) {
+      if (!extend(a, line, trial, longer) || longer.back().radius > thickest)
+        return false;
+      if (is_on_held(a, longer.back(), direction_of(longer)) || connect(a, line, longer))
+        return true;
+    }
+    return false;
+  }
+  /// Adds a piece to `longer`. Returns whether a piece was found.
+  bool extend(Index a, const Thick_line& line, const Thick_trial& trial, Axis& longer) const
+  {
+    Thick_continuation continuation(m_scan, m_set.noise, m_chains, m_rules);
+    const Axis_node end = longer.back();
+    for (const double factor : {trial.first, trial.second}) {
+      const double length = factor * m_rules.piece * end.radius;
+      const std::vector<Index> near = free_points(a, line, end, length + 2 * end.radius);
+      if (continuation.extend(near, length, trial.does_radius_change, longer))
+        return true;
+    }
+    return false;
+  }
+  /// Adds a tube to a held axis. Returns whether one was found.
+  bool connect(Index a, const Thick_line& line, Axis& longer) const
+  {
+    const Axis_node end = longer.back();
+    const std::vector<Thick_target> targets = targets_ahead(end, direction_of(longer));
+    if (targets.empty())
+      return false;
+    return Thick_continuation(m_scan, m_set.noise, m_chains, m_rules)
+        .connect(free_points(a, line, end, m_rules.longest * end.radius), targets, longer);
+  }
+  /// Returns the nodes of held axes at which a tube may end, about one per radius.
+  std::vector<Thick_target> targets_ahead(const Axis_node& end, const Vec3& along) const
+  {
+    std::vector<Thick_target> targets;
+    const double longest = m_rules.longest * end.radius;
+    for (const Index b : m_thick) {
+      if (!is_held_within(b, end, m_rules.longest))
+        continue;
+      const Axis& axis = m_set.axes[b].axis;
+      double since = std::numeric_limits<double>::infinity(); // last target [L]
+      for (std::size_t k = 0; k < axis.size(); ++k) {
+        since += k > 0 ? (axis[k].point - axis[k - 1].point).norm() : 0;
+        const Vec3 d = axis[k].point - end.point;
+        if ((since < end.radius && k + 1 < axis.size()) || d.norm() > longest ||
+            axis[k].radius < m_rules.touched * end.radius || !is_ahead(d, along))
+          continue;
+        since = 0;
+        targets.push_back({axis[k].point, axis[k].radius});
+      }
+    }
+    return targets;
+  }
+
   double radius_of(Index i) const
   {
     return m_set.axes[m_set.axis_of_point[i]].axis[m_set.segment_of_point[i]].radius;
@@ -132,13 +276,6 @@ private:
   {
     return double(m_set.axes[b].number_of_points) <
            m_rules.small * double(m_set.axes[a].number_of_points);
-  }
-  /// Returns whether the covered point `i` belongs to another axis that may support axis `a`.
-  /// `radius`: of axis `a` at its end [L].
-  bool is_similar(Index a, double radius, Index i) const
-  {
-    const Index b = m_set.axis_of_point[i];
-    return b != a && radius_of(i) >= m_rules.touched * radius && !is_small(b, a);
   }
   /// Returns whether axis `a` may explain the point `i`. `radius`: of axis `a` near the point [L].
   bool may_take(Index i, Index a, double radius) const
@@ -149,97 +286,62 @@ private:
            radius_of(i) < m_rules.released * radius || is_small(m_set.axis_of_point[i], a);
   }
 
-  /// Returns the nodes of axis `a` from the tip to the base. A thin base is left out, as in
-  /// `cut_thin_base()`. Returns no nodes if the base is not thick.
-  Axis line_to_base(Index a) const
-  {
-    Axis line(m_set.axes[a].axis.rbegin(), m_set.axes[a].axis.rend());
-    const double thickest = steady_radius(line);
-    std::size_t size = line.size();
-    bool is_thin = false;
-    for (; size > 0 && line[size - 1].radius < m_rules.firm_base * thickest; --size)
-      is_thin = is_thin || line[size - 1].radius < m_chains.thin_base * thickest;
-    if (is_thin)
-      line.resize(size);
-    constexpr std::size_t fewest = 4; // nodes that define a direction
-    if (line.size() < fewest || line.back().radius < m_thinnest)
-      line.clear();
-    return line;
-  }
-  /// Returns the largest radius that is maintained along a stretch of `steady` radii [L].
-  double steady_radius(const Axis& line) const
-  {
-    double thickest = 0;
-    for (std::size_t k = line.size(); k-- > 0;) {
-      const double wanted = m_chains.steady * line[k].radius;
-      double length = 0, narrowest = line[k].radius;
-      for (std::size_t e = k; e > 0 && length < wanted && narrowest > thickest; --e) {
-        length += (line[e].point - line[e - 1].point).norm();
-        narrowest = std::min(narrowest, line[e - 1].radius);
-      }
-      if (length >= wanted)
-        thickest = std::max(thickest, narrowest);
-    }
-    return thickest;
-  }
-
-  /// Returns whether an end of axis `a` lies at the root or on another thick axis.
-  bool is_joined(Index a, const Axis_node& end) const
-  {
-    const double near = m_rules.at_root * end.radius;
-    if (std::any_of(m_root.begin(), m_root.end(), [&](Index i) {
-          return (m_scan.points[i] - end.point).squaredNorm() < near * near;
-        }))
-      return true;
-    std::vector<Index> seen{a};
-    return is_on_axis(end, true, seen);
-  }
-  /// Returns whether an end of axis `seen.front()` lies on an axis outside of `seen`. The loose
-  /// base of another axis does not count: both axes then belong to a loose branch.
-  bool is_on_axis(const Axis_node& end, bool does_check_base, std::vector<Index>& seen) const
+  /// Returns the points within a distance of the end of a line that its continuation may explain.
+  std::vector<Index>
+  free_points(Index a, const Thick_line& line, const Axis_node& end, double distance) const
   {
     std::vector<Index> near;
-    m_scan.search->append_within(end.point, 6 * end.radius + 4 * m_scan.spacing, near);
-    for (const Index i : near) {
-      if (!m_set.is_covered(i) || !is_similar(seen.front(), end.radius, i))
-        continue;
-      const Index b = m_set.axis_of_point[i];
-      if (std::find(seen.begin(), seen.end(), b) != seen.end())
-        continue;
-      seen.push_back(b);
-      const Axis& axis = m_set.axes[b].axis;
-      const Axis_place place = nearest_place(axis, end.point);
-      const double radius = radius_at(axis, place);
-      if (radius < m_rules.touched * end.radius ||
-          place.distance >= radius + m_rules.touch * end.radius)
-        continue;
-      const bool is_at_base =
-          (point_at(axis, place) - axis.front().point).norm() < m_chains.steady * end.radius;
-      if (!is_at_base || (does_check_base && is_on_axis(axis.front(), false, seen)))
-        return true;
-    }
-    return false;
+    m_scan.search->append_within(end.point, distance, near);
+    const auto is_taken = [&](Index i) {
+      const bool is_rest = m_set.axis_of_point[i] == a &&
+                           m_set.segment_of_point[i] >= line.rest_begin &&
+                           m_set.segment_of_point[i] < line.rest_end;
+      return is_rest || !may_take(i, a, end.radius);
+    };
+    near.erase(std::remove_if(near.begin(), near.end(), is_taken), near.end());
+    return near;
   }
-
-  /// Adds a piece to `line`, which belongs to axis `a`. Returns whether a piece was found.
-  bool extend(Index a, const Thick_trial& trial, Axis& line) const
+  void mark_unexplained(Index a, std::vector<std::uint8_t>& is_marked) const
   {
-    Thick_continuation continuation(m_scan, m_set.noise, m_chains, m_rules);
-    const Axis_node end = line.back();
-    for (const double factor : {trial.first, trial.second}) {
-      const double length = factor * m_rules.piece * end.radius;
-      std::vector<Index> near;
-      m_scan.search->append_within(end.point, length + 2 * end.radius, near);
-      near.erase(std::remove_if(near.begin(),
-                                near.end(),
-                                [&](Index i) { return !may_take(i, a, end.radius); }),
-                 near.end());
-      if (continuation.extend(near, length, trial.does_radius_change, line))
-        return true;
-    }
-    return false;
+    const Thick_line line = line_of(a);
+    if (line.nodes.empty())
+      return;
+    const Axis_node& end = line.nodes.back();
+    std::vector<Index> open = free_points(a, line, end, m_rules.loose * end.radius);
+    const auto is_own = [&](Index i) { return m_set.axis_of_point[i] == a; };
+    open.erase(std::remove_if(open.begin(), open.end(), is_own), open.end());
+    if (open.size() >= m_rules.fewest)
+      for (const Index i : open)
+        is_marked[i] = 1;
   }
 
+  /// Replaces axis `a` by its continued line. The other branch of a fork becomes a new axis.
+  void accept(Index a, const Thick_line& line, Axis longer)
+  {
+    Fitted_axis& axis = m_set.axes[a];
+    const bool is_split = !line.rest.empty();
+    const std::size_t beyond = axis.axis.size() - axis.meeting; // nodes of the outer piece
+    const bool is_met = axis.meeting > 0 && !is_split && beyond < longer.size();
+    axis.meeting = is_met ? longer.size() - beyond : 0;
+    std::reverse(longer.begin(), longer.end());
+    replace(a, std::move(longer));
+    m_is_held[a] = 1;
+    if (is_split && length_of(line.rest) > m_rules.least * line.rest.back().radius)
+      add(a, Axis(line.rest.rbegin(), line.rest.rend()));
+    hold_more();
+  }
+  void add(Index parent, Axis nodes)
+  {
+    const Index b = static_cast<Index>(m_set.axes.size());
+    m_set.axes.emplace_back();
+    m_set.axes[b].parent = parent;
+    m_lost.push_back(0);
+    m_points.emplace_back();
+    m_is_held.push_back(0);
+    m_bases.emplace_back();
+    m_thick.push_back(b);
+    replace(b, std::move(nodes));
+  }
   /// Replaces the nodes of axis `a`, and assigns to it the points on its surface.
   void replace(Index a, Axis nodes)
   {
@@ -268,6 +370,7 @@ private:
     }
     m_set.axes[a].number_of_points = points.size();
     m_points[a] = std::move(points);
+    measure(a);
   }
   /// Returns the largest distance from the surface of explained points outside it [L].
   double cover(double radius) const
@@ -297,6 +400,9 @@ private:
   double m_thinnest;                        ///< least radius of a thick base [L]
   std::vector<std::size_t> m_lost;          ///< points taken from each axis [count]
   std::vector<std::vector<Index>> m_points; ///< of each axis
+  std::vector<Index> m_thick;               ///< axes that may have thick bases
+  std::vector<std::uint8_t> m_is_held;      ///< connected to the root by similar wood
+  std::vector<Base> m_bases;                ///< of the thick axes
 };
 
 } // namespace internal
@@ -305,18 +411,22 @@ private:
 struct Followed_ends
 {
   std::size_t number_of_ends = 0; ///< continued bases [count]
-  //! unexplained points around thick bases without wood of similar thickness [count]
+  //! points around thick bases that no wood of similar thickness connects to the root [count]
   std::size_t number_of_unexplained_points = 0;
 };
 
 /*!
   Continues thick axes towards the root where thick wood has few points, as in the shade of a crown.
   The level sets of such wood fall apart into strands and single points, so that chains explain only
-  the ends of a limb. A thick base is loose if it lies neither at the root nor on an axis of similar
-  thickness. It is continued by pieces (`Thick_continuation`) until it lies at one of these; if this
-  fails, its axis does not change. A continued axis takes over the points on its surface from
-  thinner and from much smaller axes. Axes that lose most of their points are dropped. `root`:
-  points of the root. O(n + points near the continued axes).
+  the ends of a limb.
+
+  An axis is held if its base lies at the root or on a held axis of similar thickness, so that wood
+  of similar thickness connects it to the root. Loose axes thus never hold each other, as two
+  branches beyond a gap below their fork. Each thick axis that is not held is continued by a tube to
+  a held axis, or by pieces (`Thick_continuation`) until a tube leads to one; if this fails, it does
+  not change, and points around its base are counted. A continued axis takes over the points on its
+  surface from thinner and from much smaller axes. Axes that lose most of their points are dropped.
+  `root`: points of the root. O(n + t^2 + points near the loose bases) for t thick axes.
 */
 inline Followed_ends follow_thick_ends(const Scan& scan,
                                        const Chain_options& chains,
@@ -325,15 +435,9 @@ inline Followed_ends follow_thick_ends(const Scan& scan,
                                        Axis_set& set)
 {
   internal::Thick_end_follower follower(scan, chains, rules, root, set);
-  const std::vector<Index> axes = follower.thick_axes();
   Followed_ends result;
-  for (const Index a : axes)
-    result.number_of_ends += follower.follow(a);
-  std::vector<std::uint8_t> is_marked(scan.size(), 0);
-  for (const Index a : axes)
-    follower.mark_unexplained(a, is_marked);
-  result.number_of_unexplained_points =
-      static_cast<std::size_t>(std::count(is_marked.begin(), is_marked.end(), 1));
+  result.number_of_ends = follower.follow_all();
+  result.number_of_unexplained_points = follower.count_unexplained();
   follower.drop_lost();
   return result;
 }
