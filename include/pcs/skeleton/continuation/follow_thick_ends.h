@@ -56,14 +56,14 @@ public:
     hold_more();
   }
 
-  /// Continues all bases that are not held, thickest first. Returns the number of those that
-  /// succeeded.
+  /// Continues all bases that are not held, thickest first. Short gaps that remain are left to
+  /// `join_axes()`; then continues the bases beyond them. Returns the number of continued bases.
   std::size_t follow_all()
   {
-    std::size_t count = 0;
-    for (std::size_t k = 0; k < m_thick.size(); ++k) // `follow()` appends axes
-      count += !m_is_held[m_thick[k]] && follow(m_thick[k]);
-    return count;
+    const std::size_t count = follow_loose();
+    m_may_leave_gaps = true;
+    hold_more();
+    return count + follow_loose();
   }
 
   /// Returns the number of points around bases that are not held, which do not belong to wood of
@@ -164,8 +164,8 @@ private:
     return is_on_held(a, base.node, base.along) ||
            (front.radius > m_rules.touched * base.node.radius && is_on_held(a, front, base.along));
   }
-  /// Returns whether the end of axis `a` lies on a held axis of similar thickness, or is separated
-  /// from it by a short gap along the direction `along`.
+  /// Returns whether the end of axis `a` lies on a held axis of similar thickness, or, if
+  /// gaps may be left, is separated from it by a short one along the direction `along`.
   bool is_on_held(Index a, const Axis_node& end, const Vec3& along) const
   {
     return std::any_of(m_thick.begin(), m_thick.end(), [&](Index b) {
@@ -177,7 +177,7 @@ private:
       const Vec3 d = point_at(axis, place) - end.point;
       return radius >= m_rules.touched * end.radius &&
              (gap < m_rules.touch * end.radius ||
-              (gap < m_rules.least * end.radius && is_ahead(d, along)));
+              (m_may_leave_gaps && gap < m_rules.least * end.radius && is_ahead(d, along)));
     });
   }
   bool is_held_within(Index b, const Axis_node& end, double radii) const
@@ -188,6 +188,14 @@ private:
   bool is_ahead(const Vec3& d, const Vec3& along) const
   {
     return d.dot(along) > std::cos(m_rules.widest_turn) * d.norm();
+  }
+
+  std::size_t follow_loose()
+  {
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < m_thick.size(); ++k) // `follow()` appends axes
+      count += !m_is_held[m_thick[k]] && follow(m_thick[k]);
+    return count;
   }
 
   /// Continues the base of axis `a` up to a held axis. Returns whether this succeeded.
@@ -403,6 +411,7 @@ private:
   std::vector<Index> m_thick;               ///< axes that may have thick bases
   std::vector<std::uint8_t> m_is_held;      ///< connected to the root by similar wood
   std::vector<Base> m_bases;                ///< of the thick axes
+  bool m_may_leave_gaps = false;            ///< whether axes beyond short gaps are held
 };
 
 } // namespace internal
