@@ -23,7 +23,7 @@ struct Thick_line
   Axis rest;                          ///< other branch of a fork, from its tip to the base
   Index rest_begin = 0, rest_end = 0; ///< segments of the axis that belong to the rest
 
-  /// Returns the direction beyond the end of a line. `tail`: length of the part that defines it [L].
+  /// Returns the direction beyond the end of a line. `tail`: length that defines it [L].
 
   static Vec3 direction_of(const Axis& line, double tail)
   {
