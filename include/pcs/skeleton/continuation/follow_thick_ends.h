@@ -66,8 +66,8 @@ public:
     return count + follow_loose();
   }
 
-  /// Returns the number of points around bases that are not held, which do not belong to wood of
-  /// similar thickness [count]. Bases with fewer than `fewest` of them do not count.
+  /// Returns the number of unexplained points around bases that are not held, and have no held axis
+  /// of similar thickness near them [count]. Bases with fewer than `fewest` of them do not count.
   std::size_t count_unexplained() const
   {
     std::vector<std::uint8_t> is_marked(m_scan.size(), 0);
@@ -309,15 +309,22 @@ private:
     near.erase(std::remove_if(near.begin(), near.end(), is_taken), near.end());
     return near;
   }
+  /// Marks the unexplained points around the base of axis `a` if no held axis of similar thickness
+  /// is near: a part of a thick branch is missing there.
   void mark_unexplained(Index a, std::vector<std::uint8_t>& is_marked) const
   {
     const Thick_line line = line_of(a);
     if (line.nodes.empty())
       return;
     const Axis_node& end = line.nodes.back();
-    std::vector<Index> open = free_points(a, line, end, m_rules.loose * end.radius);
-    const auto is_own = [&](Index i) { return m_set.axis_of_point[i] == a; };
-    open.erase(std::remove_if(open.begin(), open.end(), is_own), open.end());
+    std::vector<Index> near, open;
+    m_scan.search->append_within(end.point, m_rules.loose * end.radius, near);
+    for (const Index i : near)
+      if (!m_set.is_covered(i)) {
+        if (!m_scan.is_outlier[i])
+          open.push_back(i);
+      } else if (m_is_held[m_set.axis_of_point[i]] && radius_of(i) >= m_rules.touched * end.radius)
+        return;
     if (open.size() >= m_rules.fewest)
       for (const Index i : open)
         is_marked[i] = 1;
@@ -420,7 +427,7 @@ private:
 struct Followed_ends
 {
   std::size_t number_of_ends = 0; ///< continued bases [count]
-  //! points around thick bases that no wood of similar thickness connects to the root [count]
+  //! unexplained points around thick bases far from held axes of similar thickness [count]
   std::size_t number_of_unexplained_points = 0;
 };
 
@@ -433,7 +440,8 @@ struct Followed_ends
   of similar thickness connects it to the root. Loose axes thus never hold each other, as two
   branches beyond a gap below their fork. Each thick axis that is not held is continued by a tube to
   a held axis, or by pieces (`Thick_continuation`) until a tube leads to one; if this fails, it does
-  not change, and points around its base are counted. A continued axis takes over the points on its
+  not change, and unexplained points around its base are counted if no held axis of
+  similar thickness is near. A continued axis takes over the points on its
   surface from thinner and from much smaller axes. Axes that lose most of their points are dropped.
   `root`: points of the root. O(n + t^2 + points near the loose bases) for t thick axes.
 */
