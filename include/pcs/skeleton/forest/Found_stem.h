@@ -27,11 +27,11 @@ namespace internal {
 /// A stem in a scan, and its tree.
 struct Found_stem
 {
-  Index axis, tree;
-  Vec3 foot;
-  double radius;           ///< largest radius in the lowest part
-  double radius_at_breast; ///< radius at breast height; 0 if the axis ends below it
-  double height;           ///< of the foot above the lowest ground around it
+  Index axis = none, tree = none;
+  Vec3 foot = Vec3::Zero();
+  double radius = 0;           ///< largest radius in the lowest part
+  double radius_at_breast = 0; ///< radius at breast height; 0 if the stem ends below it
+  double height = 0;           ///< of the foot above the lowest ground around it
   double above_ground = 0; ///< of the foot above the ground below it; 0 if that is not known [L]
 
   /// Returns the foot on the ground. It stays where it is if the ground is farther than breast

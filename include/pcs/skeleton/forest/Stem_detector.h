@@ -224,7 +224,9 @@ private:
 
   Found_stem stem_of(Index a, const Vec3& foot, const Lowest_ground& ground) const
   {
-    Found_stem stem{a, none, foot};
+    Found_stem stem;
+    stem.axis = a;
+    stem.foot = foot;
     stem.radius = radius_near(m_axes.axes[a].axis, foot, m_rules.root * m_breast_height);
     stem.height = ground.height(foot);
     return stem;
