@@ -248,6 +248,24 @@ BOOST_AUTO_TEST_CASE(feet_far_above_the_ground_are_named)
   BOOST_TEST(sentences[0].find("number 1") != std::string::npos);
 }
 
+BOOST_AUTO_TEST_CASE(trees_too_thin_for_their_height_are_named)
+{
+  pcs::Segmentation_report report;
+  report.breast_height = 1.3;
+  for (const double diameter : {0.06, 0.02, 0.0}) { // 0: not known
+    pcs::Segmented_tree tree;
+    tree.height = 8;
+    tree.radius = 0.05;
+    tree.diameter_at_breast_height = diameter;
+    report.trees.push_back(tree);
+  }
+  const auto reasons = pcs::warnings_of_trees(report);
+  BOOST_TEST(reasons[0].empty());
+  BOOST_REQUIRE(reasons[1].size() == 1u);
+  BOOST_TEST(reasons[1][0].find("with a diameter at breast height too small") == 0u);
+  BOOST_TEST(reasons[2].empty());
+}
+
 BOOST_AUTO_TEST_CASE(trees_thicker_than_others_of_the_same_height_are_named)
 {
   pcs::Segmentation_report report;

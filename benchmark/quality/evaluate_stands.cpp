@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSL-1.0
 // Segmentation of virtual stands on slopes, with sparse ground and shrubs, against the truth.
 
+#include "support/Labelled_point.h"
 #include "support/Table.h"
 #include <pcs/generators/Tree_habit.h>
 #include <pcs/generators/grow_tree.h>
@@ -9,7 +10,6 @@
 #include <pcs/segment_trees.h>
 
 #include <CGAL/Simple_cartesian.h>
-#include <CGAL/property_map.h>
 
 #include <boost/range/iterator_range.hpp>
 
@@ -31,6 +31,9 @@ using Kernel = CGAL::Simple_cartesian<double>;
 using Point = Kernel::Point_3;
 using Vector = Kernel::Vector_3;
 using Tree = pcs::Tree_skeleton<Kernel>;
+using pcs_bench::Found_map;
+using pcs_bench::Labelled_point;
+using pcs_bench::Position_map;
 namespace np = pcs::parameters;
 
 namespace {
@@ -52,31 +55,6 @@ struct Planted_tree
 {
   Point foot;
   double diameter = 0; ///< at breast height [m]
-};
-
-struct Labelled_point
-{
-  Point point;
-  int truth = -1;                ///< index of the tree; -1: ground or shrub
-  std::size_t found = pcs::npos; ///< index of the segmented tree
-};
-
-/// The labelled points as property maps.
-struct Position_map
-{
-  using key_type = Labelled_point;
-  using value_type = Point;
-  using reference = const Point&;
-  using category = boost::readable_property_map_tag;
-  friend const Point& get(const Position_map&, const Labelled_point& p) { return p.point; }
-};
-struct Found_map
-{
-  using key_type = Labelled_point;
-  using value_type = std::size_t;
-  using reference = std::size_t;
-  using category = boost::writable_property_map_tag;
-  friend void put(const Found_map&, Labelled_point& p, std::size_t tree) { p.found = tree; }
 };
 
 struct Virtual_stand

@@ -79,7 +79,8 @@ struct Tree_doubt
 /// Returns the reasons to doubt trees, with at least one tree each.
 inline std::vector<Tree_doubt> doubts_of_trees(const Segmentation_report& r)
 {
-  constexpr double max_diameter = 0.1; // stem diameter / height; trees: 0.01 to 0.05 [-]
+  constexpr double max_diameter = 0.1;   // stem diameter / height; trees: 0.01 to 0.05 [-]
+  constexpr double min_diameter = 0.003; // at breast height / height; slender trees: 0.007 [-]
   constexpr double max_foot = 0.1; // height of the lower end of the stem / height of the tree [-]
   // a tree without its top: height and radius, in medians of a stand of at least this many trees
   constexpr double cut_height = 0.6, full_radius = 0.8;
@@ -102,6 +103,12 @@ inline std::vector<Tree_doubt> doubts_of_trees(const Segmentation_report& r)
       [&](const Segmented_tree& t) {
         return !is_low(t) &&
                std::max(2 * t.radius, t.diameter_at_breast_height) > max_diameter * t.height;
+      });
+  add("with a diameter at breast height too small for the height; the scan may show too little of "
+      "the stem there",
+      [&](const Segmented_tree& t) {
+        return t.diameter_at_breast_height > 0 &&
+               t.diameter_at_breast_height < min_diameter * t.height;
       });
   add("with a stem that begins far above the ground; its lower part may be missing or too sparse, "
       "so foot, diameter and height may be wrong",

@@ -24,7 +24,6 @@ struct Thick_line
   Index rest_begin = 0, rest_end = 0; ///< segments of the axis that belong to the rest
 
   /// Returns the direction beyond the end of a line. `tail`: length that defines it [L].
-
   static Vec3 direction_of(const Axis& line, double tail)
   {
     std::size_t first = line.size() - 1;
