@@ -256,9 +256,12 @@ private:
     for (std::size_t s = 0; s < stems.size(); ++s) {
       if (levels[s].size() < m_rules.ground_points)
         continue;
-      Found_stem& stem = stems[s];
-      stem.above_ground = m_surface->height(stem.foot) - pcs::internal::lower_median(levels[s]);
-      stem.height = std::max(0.0, stem.above_ground);
+      const double above =
+          m_surface->height(stems[s].foot) - pcs::internal::lower_median(levels[s]);
+      if (!std::isfinite(above)) // in a square without points, there is no surface
+        continue;
+      stems[s].above_ground = above;
+      stems[s].height = std::max(0.0, above);
     }
   }
 
