@@ -174,14 +174,14 @@ PCS_ALWAYS_INLINE void store(const Lanes& from, T* to)
   std::memcpy(to, &from, sizeof(Lanes));
 }
 
-/// Prefetches `bytes` bytes of memory that are read soon.
+/// Prefetches `bytes` bytes of memory that are read soon; none if `memory` is null.
 PCS_ALWAYS_INLINE void prefetch([[maybe_unused]] const void* memory,
                                 [[maybe_unused]] std::size_t bytes)
 {
 #if defined(__GNUC__) || defined(__clang__)
   constexpr std::size_t cache_line = 64;
   const char* begin = static_cast<const char*>(memory);
-  for (std::size_t b = 0; b < bytes; b += cache_line)
+  for (std::size_t b = 0; begin != nullptr && b < bytes; b += cache_line)
     __builtin_prefetch(begin + b);
 #endif
 }
