@@ -113,11 +113,11 @@ BOOST_AUTO_TEST_CASE(a_changed_decision_on_leaves_is_a_warning)
 BOOST_AUTO_TEST_CASE(figures_that_depend_on_chance_are_named)
 {
   // Two equal stems: the choice of the tree depends on single points.
-  Cloud points = cylinder(1500, 0.1, 3);
-  append(points, cylinder(1500, 0.1, 3, Point(3, 0, 0), Vector(0, 0, 1)));
+  Cloud points = cylinder(500, 0.1, 3);
+  append(points, cylinder(500, 0.1, 3, Point(3, 0, 0), Vector(0, 0, 1)));
   Tree tree;
   const pcs::Skeleton_report report =
-      pcs::extract_tree_skeleton(points, tree, np::number_of_resamples(5));
+      pcs::extract_tree_skeleton(points, tree, np::number_of_resamples(6));
   BOOST_TEST_REQUIRE(report.spread.root > 1);
   std::string all;
   for (const std::string& sentence : pcs::warnings(report))
@@ -216,7 +216,7 @@ BOOST_AUTO_TEST_CASE(a_cancelled_estimate_continues)
   Tree tree;
   const pcs::Skeleton_spread expected =
       pcs::extract_tree_skeleton(points, tree, np::number_of_resamples(3)).spread;
-  double limit = 0.7, last = 0; // while copies are extracted
+  double limit = 0.6, last = 0; // while copies are extracted
   const auto callback = [&](double f) {
     BOOST_TEST(f >= last);
     last = f;
@@ -344,7 +344,7 @@ BOOST_AUTO_TEST_CASE(a_displaced_scan_has_the_rounding_and_duplicates_of_the_inp
   points.insert(points.end(), points.begin(), points.begin() + 100);
   Tree tree;
   const auto plain = pcs::extract_tree_skeleton(points, tree);
-  const auto report = pcs::extract_tree_skeleton(points, tree, np::number_of_resamples(4));
+  const auto report = pcs::extract_tree_skeleton(points, tree, np::number_of_resamples(2));
   BOOST_TEST_REQUIRE(report.spread.is_displaced);
   BOOST_TEST(plain.coordinate_step == 1.0 / 64);
   BOOST_TEST(report.coordinate_step == plain.coordinate_step);
@@ -364,6 +364,51 @@ Cloud random_points(unsigned seed)
   return points;
 }
 
+BOOST_AUTO_TEST_CASE(uncertain_medians_need_more_copies)
+{
+  const Cloud points = random_points(1);
+  Tree tree;
+  const auto spread = pcs::extract_tree_skeleton(points, tree, np::number_of_resamples(2)).spread;
+  BOOST_TEST(spread.number_of_copies + spread.number_of_empty_copies == 8u);
+}
+
+BOOST_AUTO_TEST_CASE(large_scans_have_fewer_additional_copies)
+{
+  using pcs::skeleton::largest_number_of_copies;
+  BOOST_TEST(largest_number_of_copies(0, 4) == 16u);
+  BOOST_TEST(largest_number_of_copies(10000, 4) == 16u);
+  BOOST_TEST(largest_number_of_copies(30000, 4) == 7u);
+  BOOST_TEST(largest_number_of_copies(1000000, 4) == 5u);
+  BOOST_TEST(largest_number_of_copies(1000000, 10) == 10u);
+  BOOST_TEST(largest_number_of_copies(1000, 0) == 0u);
+}
+
+BOOST_AUTO_TEST_CASE(medians_of_more_copies_are_more_certain)
+{
+  pcs::Skeleton_report report;
+  report.breast_height = 1.3;
+  pcs::skeleton::Copy_descriptors copies;
+  BOOST_TEST(copies.error_of_medians(report) == 0);
+  const auto add = [&](double height) {
+    report.height = height;
+    copies.add(report, pcs::skeleton::Vec3::Zero());
+  };
+  for (int k = 0; k < 2; ++k) {
+    add(9.9);
+    add(10.1);
+  }
+  report.height = 10;
+  const double error = copies.error_of_medians(report); // of a tolerance of 0.1
+  BOOST_TEST(error == 0.5 * std::sqrt(std::acos(-1.0) / 2) * std::sqrt(4.0 / 3),
+             boost::test_tools::tolerance(1e-9));
+  for (int k = 0; k < 6; ++k) {
+    add(9.9);
+    add(10.1);
+  }
+  report.height = 10;
+  BOOST_TEST(copies.error_of_medians(report) < 0.5 * error);
+}
+
 BOOST_AUTO_TEST_CASE(an_untypical_skeleton_is_replaced)
 {
   Cloud points;
@@ -373,7 +418,7 @@ BOOST_AUTO_TEST_CASE(an_untypical_skeleton_is_replaced)
   for (unsigned seed = 1; seed <= 12 && !report.spread.is_displaced; ++seed) {
     points = random_points(seed); // not all displaced scans are more typical
     calls = 0;
-    const auto np = np::number_of_resamples(4).callback([&](double) {
+    const auto np = np::number_of_resamples(2).callback([&](double) {
       ++calls;
       return true;
     });
@@ -385,7 +430,7 @@ BOOST_AUTO_TEST_CASE(an_untypical_skeleton_is_replaced)
 
   // stopped in each part of the work, the calls together give the same tree
   std::size_t allowed = 0;
-  pcs::Tree_skeletonization stages(points, np::number_of_resamples(4).callback([&](double) {
+  pcs::Tree_skeletonization stages(points, np::number_of_resamples(2).callback([&](double) {
     return allowed-- > 0;
   }));
   Tree stopped;

@@ -155,8 +155,9 @@ public:
           but at most 40,000, and takes as long as a scan of its size. If the subsets have at least
           half of the points, the majority of the scan and the subsets decides whether there are
           leaves, and a skeleton that differs from most subsets is replaced by that of points
-          displaced by a thousandth of their spacing. Scans with fewer than 100 points have no
-          subsets
+          displaced by a thousandth of their spacing. Where the medians of these subsets are
+          uncertain, there are up to four times as many, with at most 200,000 points together. Scans
+          with fewer than 100 points have no subsets
         \nptype integer, 0 to 100
         \npdefault 0: the spread is not estimated
       \np{wood_map} whether a point may belong to a branch; others (leaves) are not used

@@ -214,7 +214,7 @@ inline void declare(CLI::App& app, Skeleton_options& options)
          "--resamples",
          options.number_of_resamples,
          "number of random subsamples of the scan, whose skeletons give the standard errors in "
-         "the report; 0: none")
+         "the report; up to four times as many if they differ; 0: none")
       ->check(CLI::Range(0, 100))
       ->capture_default_str();
   app.add_option("--breast-height", options.breast_height, "height of the diameter in the report")

@@ -24,7 +24,7 @@ namespace skeleton {
   The deviations among the subsets, called copies, are the basis of `standard_errors()`. If the
   copies have at least half of the points, the majority of the scan and the copies decides whether
   there are leaves, and a skeleton that is far from the medians of the copies is replaced by a more
-  typical one. Cancelled calls may be repeated; they continue with the interrupted skeleton.
+  typical one. There are more copies of small scans if the medians of the first ones are uncertain. Cancelled calls may be repeated; they continue with the interrupted skeleton.
 */
 template <class ConcurrencyTag>
 class Resampled_session
@@ -55,6 +55,8 @@ private:
   bool has_copies() const { return m_number_of_copies > 0; }
   std::unique_ptr<Session> make_session(Scan_points points) const;
   bool extract_copies(pcs::internal::Progress& progress);
+  bool needs_more_copies();
+  std::size_t number_of_copies_at_most() const;
   void vote_on_leaves();
   bool choose_typical_skeleton(pcs::internal::Progress& progress);
   bool are_comparable() const;
@@ -63,7 +65,9 @@ private:
   Scan_points m_scan;          ///< empty without copies
   Session_hints m_hints;       ///< without stations and normals; the method of the scan, once known
   double m_blade_fraction = 0; ///< by which the method was chosen [-]
-  std::size_t m_number_of_copies = 0, m_number_of_completed_copies = 0;
+  std::size_t m_number_of_wanted_copies = 0; ///< `number_of_resamples`
+  std::size_t m_number_of_copies = 0;        ///< more, if those differ too much
+  std::size_t m_number_of_completed_copies = 0;
   Copy_descriptors m_copies;
   std::unique_ptr<Session> m_session;
   std::unique_ptr<Session> m_copy;  ///< the copy in work

@@ -28,6 +28,9 @@ constexpr double end_of_stages = 0.5, end_of_copies = 0.8, end_of_vote = 0.9;
 /// Copies with a smaller fraction of the points are not compared with the scan [-].
 constexpr double least_comparable_fraction = 0.5;
 
+/// Largest standard error of a median for which there are enough copies, in tolerances [-].
+constexpr double settled_error = 0.5;
+
 /// Returns the root in the coordinates of the input.
 template <class Tag>
 Vec3 root_of(const Session<Tag>& session)
@@ -45,7 +48,7 @@ Resampled_session<ConcurrencyTag>::Resampled_session(Scan_points scan,
   : m_hints(std::move(hints))
 {
   if (scan.positions.size() >= least_resampled_points)
-    m_number_of_copies = number_of_resamples;
+    m_number_of_copies = m_number_of_wanted_copies = number_of_resamples;
   if (has_copies())
     m_scan = scan;
   m_session = make_session(std::move(scan));
@@ -117,23 +120,47 @@ Resampled_session<ConcurrencyTag>::make_session(Scan_points points) const
                                    std::move(hints));
 }
 
-/// Extracts the remaining skeletons of the copies.
+/// Extracts the remaining skeletons of the copies, and of more copies while their medians are
+/// uncertain.
 template <class ConcurrencyTag>
 bool Resampled_session<ConcurrencyTag>::extract_copies(pcs::internal::Progress& progress)
 {
-  const auto count = double(m_number_of_copies);
-  for (; m_number_of_completed_copies < m_number_of_copies; ++m_number_of_completed_copies) {
-    pcs::internal::Progress part(
-        [&](double f) { return progress((double(m_number_of_completed_copies) + f) / count); });
-    if (!m_copy)
-      m_copy = make_session(resample_scan(m_scan, m_number_of_completed_copies));
-    if (!m_copy->join(part))
-      return false;
-    if (m_copy->report().status == Status::converged)
-      m_copies.add(m_copy->report(), internal::root_of(*m_copy));
-    m_copy.reset();
-  }
+  do {
+    for (; m_number_of_completed_copies < m_number_of_copies; ++m_number_of_completed_copies) {
+      pcs::internal::Progress part([&](double f) { // half of it until the wanted copies are done
+        const double done = double(m_number_of_completed_copies) + f;
+        return progress(done / (done + double(m_number_of_wanted_copies)));
+      });
+      if (!m_copy)
+        m_copy = make_session(resample_scan(m_scan, m_number_of_completed_copies));
+      if (!m_copy->join(part))
+        return false;
+      if (m_copy->report().status == Status::converged)
+        m_copies.add(m_copy->report(), internal::root_of(*m_copy));
+      m_copy.reset();
+    }
+  } while (needs_more_copies());
   return true;
+}
+
+/// Doubles the number of copies if their medians are uncertain. Returns whether it did.
+template <class ConcurrencyTag>
+bool Resampled_session<ConcurrencyTag>::needs_more_copies()
+{
+  const std::size_t most = number_of_copies_at_most();
+  if (m_number_of_copies >= most ||
+      m_copies.error_of_medians(m_session->report()) <= internal::settled_error)
+    return false;
+  m_number_of_copies = std::min(most, 2 * m_number_of_copies);
+  return true;
+}
+
+template <class ConcurrencyTag>
+std::size_t Resampled_session<ConcurrencyTag>::number_of_copies_at_most() const
+{
+  return are_comparable()
+             ? largest_number_of_copies(m_scan.positions.size(), m_number_of_wanted_copies)
+             : m_number_of_wanted_copies;
 }
 
 /// If the scan and its copies outvote the scan on whether there are leaves, starts the session
@@ -155,22 +182,21 @@ void Resampled_session<ConcurrencyTag>::vote_on_leaves()
 }
 
 /*!
-  If the skeleton of the scan is far from the medians of the copies, extracts up to four skeletons
-  of the scan whose coordinates are displaced by at most a thousandth of the spacing, until one is
-  close enough, and keeps the closest of all. Decisions that depend on chance are thus made as in
+  If the skeleton of the scan is far from the medians of the copies, extracts skeletons of the scan
+  whose coordinates are displaced by at most a thousandth of the spacing, until one is close enough
+  or there are as many as copies, and keeps the closest of all. Decisions that depend on chance are thus made as in
   most copies.
 */
 template <class ConcurrencyTag>
 bool Resampled_session<ConcurrencyTag>::choose_typical_skeleton(pcs::internal::Progress& progress)
 {
-  constexpr std::size_t max_trials = 4;
   constexpr double displacement = 0.001; // spacings
   if (!m_is_displaced) {
     m_coordinate_step = m_session->report().coordinate_step;
     m_is_single_precision = m_session->report().is_single_precision;
   }
   double least = distance_from_copies(*m_session);
-  for (; m_number_of_trials < max_trials && least > 1; ++m_number_of_trials) {
+  for (; m_number_of_trials < m_number_of_copies && least > 1; ++m_number_of_trials) {
     if (!m_trial) {
       Scan_points points = m_scan;
       displace_points(points.positions,

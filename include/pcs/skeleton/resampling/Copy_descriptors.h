@@ -7,6 +7,7 @@
 
 #include <pcs/core/Skeleton_options.h>
 #include <pcs/core/Skeleton_report.h>
+#include <pcs/internal/constants.h>
 #include <pcs/internal/median.h>
 #include <pcs/skeleton/model/Scan.h>
 
@@ -58,29 +59,39 @@ struct Copy_descriptors
 
   /*!
     Returns how far the descriptors of a skeleton are from the medians of the copies and this
-    skeleton: the largest difference in units of 1 % of the height, 2 % of the diameter at breast
-    height, 5 % of the length of the trunk, 5 % of the volume, or 4 % of the breast height for each
-    coordinate of the root [-]. 0 without copies.
+    skeleton: the largest difference, in tolerances [-]. 0 without copies.
   */
   double distance_from_medians(const Skeleton_report& r, const Vec3& root_position) const
   {
-    if (height.empty())
-      return 0;
     double largest = 0;
-    const auto compare = [&](std::vector<double> values, double value, double unit) {
-      values.push_back(value);
-      const double difference = std::abs(value - pcs::internal::lower_median(values));
-      if (difference > 0)
-        largest = std::max(largest, difference / unit);
-    };
-    const double trunk_length = r.by_order.empty() ? 0 : r.by_order.front().length;
-    compare(height, r.height, 0.01 * r.height);
-    compare(diameter, r.diameter_at_breast_height, 0.02 * r.diameter_at_breast_height);
-    compare(trunk, trunk_length, 0.05 * trunk_length);
-    compare(volume, r.total.volume, 0.05 * r.total.volume);
-    for (int k = 0; k < 3; ++k)
-      compare(root[k], root_position[k], 0.04 * r.breast_height);
+    for_each_tolerance(r,
+                       root_position,
+                       [&](std::vector<double> values, double value, double tolerance) {
+                         values.push_back(value);
+                         const double difference =
+                             std::abs(value - pcs::internal::lower_median(values));
+                         if (difference > 0)
+                           largest = std::max(largest, difference / tolerance);
+                       });
     return largest;
+  }
+
+  /*!
+    Returns the largest standard error of the median of a descriptor, in tolerances [-]. It is
+    `sqrt(pi / 2) s / sqrt(n)` for `n` copies with the standard deviation `s`. 0 without copies.
+  */
+  double error_of_medians(const Skeleton_report& r) const
+  {
+    double largest = 0;
+    for_each_tolerance(r,
+                       Vec3::Zero(),
+                       [&](const std::vector<double>& values, double, double tolerance) {
+                         const double s = deviation(values);
+                         if (s > 0)
+                           largest = std::max(largest,
+                                              s / (tolerance * std::sqrt(double(values.size()))));
+                       });
+    return std::sqrt(pcs::internal::pi / 2) * largest;
   }
 
   Skeleton_spread spread() const
@@ -98,6 +109,27 @@ struct Copy_descriptors
       result.volume_by_size.push_back(deviation(volumes));
     result.root = std::hypot(deviation(root[0]), deviation(root[1]), deviation(root[2]));
     return result;
+  }
+
+private:
+  /*!
+    Calls `use(values of the copies, value of r, tolerance)` for each descriptor that is compared.
+    The tolerances are 1 % of the height, 2 % of the diameter at breast height, 5 % of the length of
+    the trunk and of the volume, and 4 % of the breast height for each coordinate of the root.
+  */
+  template <class Function>
+  void
+  for_each_tolerance(const Skeleton_report& r, const Vec3& root_position, const Function& use) const
+  {
+    if (height.empty())
+      return;
+    const double trunk_length = r.by_order.empty() ? 0 : r.by_order.front().length;
+    use(height, r.height, 0.01 * r.height);
+    use(diameter, r.diameter_at_breast_height, 0.02 * r.diameter_at_breast_height);
+    use(trunk, trunk_length, 0.05 * trunk_length);
+    use(volume, r.total.volume, 0.05 * r.total.volume);
+    for (int k = 0; k < 3; ++k)
+      use(root[k], root_position[k], 0.04 * r.breast_height);
   }
 };
 

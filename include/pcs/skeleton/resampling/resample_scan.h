@@ -39,6 +39,17 @@ inline double resampled_fraction(std::size_t n)
 }
 
 /*!
+  Returns the largest number of copies of a scan of `n` points, if `wanted` copies differ too much:
+  up to four times as many, as long as they have at most 200,000 points together.
+*/
+inline std::size_t largest_number_of_copies(std::size_t n, std::size_t wanted)
+{
+  constexpr double max_points = 200000;
+  const double points = resampled_fraction(n) * double(std::max<std::size_t>(n, 1));
+  return std::max(wanted, std::min(4 * wanted, static_cast<std::size_t>(max_points / points)));
+}
+
+/*!
   Returns a random subset of a scan of n points. Each point is kept independently with the
   probability `resampled_fraction(n)`; the choice depends only on `seed` and the indices of the
   points. O(n).
