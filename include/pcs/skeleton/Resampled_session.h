@@ -24,7 +24,8 @@ namespace skeleton {
   The deviations among the subsets, called copies, are the basis of `standard_errors()`. If the
   copies have at least half of the points, the majority of the scan and the copies decides whether
   there are leaves, and a skeleton that is far from the medians of the copies is replaced by a more
-  typical one. There are more copies of small scans if the medians of the first ones are uncertain. Cancelled calls may be repeated; they continue with the interrupted skeleton.
+  typical one. There are more copies of small scans if the medians of the first ones are uncertain.
+  Cancelled calls may be repeated; they continue with the interrupted skeleton.
 */
 template <class ConcurrencyTag>
 class Resampled_session

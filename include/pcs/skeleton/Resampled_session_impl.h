@@ -184,8 +184,8 @@ void Resampled_session<ConcurrencyTag>::vote_on_leaves()
 /*!
   If the skeleton of the scan is far from the medians of the copies, extracts skeletons of the scan
   whose coordinates are displaced by at most a thousandth of the spacing, until one is close enough
-  or there are as many as copies, and keeps the closest of all. Decisions that depend on chance are thus made as in
-  most copies.
+  or there are as many as copies, and keeps the closest of all. Decisions that depend on chance are
+  thus made as in most copies.
 */
 template <class ConcurrencyTag>
 bool Resampled_session<ConcurrencyTag>::choose_typical_skeleton(pcs::internal::Progress& progress)

@@ -53,7 +53,7 @@ inline std::vector<Index> find_objects(const Scan& scan,
                                        const Object_options& rules)
 {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  const Index n = scan.size();
+  const Index n = static_cast<Index>(scan.size());
   const Point_parts parts = connected_parts<CGAL::Sequential_tag>(is_used, links);
   std::vector<double> low(n, infinity), high(n, -infinity); // by component [L]
   std::vector<std::uint8_t> is_kept(n, 0);                  // by component

@@ -111,14 +111,17 @@ public:
 
   /// Adds a piece of `length` [L] to `line` if the points `near` support it. Returns whether it was
   /// added.
-  bool extend(const std::vector<Index>& near, double length, bool does_radius_change, Axis& line)
+  bool extend(const std::vector<Index>& near,
+              double length,
+              const std::vector<double>& ratios,
+              Axis& line)
   {
     const Axis_node end = line.back();
     const std::size_t first = first_of_tail(line);
     const Vec3 along = (end.point - line[first].point).normalized();
     Axis trial(line.begin() + static_cast<std::ptrdiff_t>(first), line.end());
     const std::size_t seam = trial.size() - 1;
-    append(best_end(end, along, length, does_radius_change, near), length, trial);
+    append(best_end(end, along, length, ratios, near), length, trial);
     Axis_fit fit(trial, Fit_model::of(m_scan.spacing, m_noise));
     if (!run(near, fit))
       return false;
@@ -300,7 +303,7 @@ private:
   Axis_node best_end(const Axis_node& end,
                      const Vec3& along,
                      double length,
-                     bool does_radius_change,
+                     const std::vector<double>& ratios,
                      const std::vector<Index>& near) const
   {
     constexpr int rings = 5;
@@ -314,11 +317,9 @@ private:
         const double turn = 2 * pcs::internal::pi * k / count;
         const Vec3 d =
             std::cos(angle) * along + std::sin(angle) * (std::cos(turn) * e1 + std::sin(turn) * e2);
-        for (const double ratio : {1.0, 1.25, 1.5}) { // wood widens towards the base
-          if (ratio > 1 && !does_radius_change)
-            break;
+        for (const double ratio : ratios) {
           const double score = score_of(end.point, d, length, ratio * end.radius, near) -
-                               0.25 * ring - 2 * (ratio - 1);
+                               0.25 * ring - 2 * std::abs(ratio - 1);
           if (score > most) {
             most = score;
             best.point = end.point + length * d;
