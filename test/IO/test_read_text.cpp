@@ -49,6 +49,13 @@ BOOST_AUTO_TEST_CASE(a_header_names_the_columns)
   BOOST_TEST(read("a.csv", "x y z\n").number_of_points() == 0u);
 }
 
+BOOST_AUTO_TEST_CASE(a_column_may_be_named_like_the_first_bytes_of_las_files)
+{
+  const Point_table table = read("a.csv", "LASF,x,y,z\n7,1,2,3\n");
+  BOOST_TEST((table.points() == std::vector<Point_3>{Point_3(1, 2, 3)}));
+  BOOST_TEST(table.property<double>("LASF")[0] == 7);
+}
+
 BOOST_AUTO_TEST_CASE(a_comment_before_the_first_row_may_name_the_columns)
 {
   for (const char* text : {"//X Y Z wood\n1 2 3 1\n",

@@ -105,7 +105,8 @@ inline File_format format_by_content(const std::string& path)
       text.substr(0, text.find_first_of(std::string_view(" \t\r\n\0", 5)));
   if (word == "ply")
     return File_format::ply;
-  if (text.substr(0, 4) == "LASF")
+  // the last bytes are flags, whose high byte is reserved; a column of text may be named LASF, too
+  if (text.substr(0, 4) == "LASF" && text[7] == '\0')
     return File_format::las;
   if (text.substr(0, 6) == "# .PCD")
     return File_format::pcd;
