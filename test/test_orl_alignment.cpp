@@ -5,6 +5,7 @@
 #include <pcs/IO/read_correspondences.h>
 #include <pcs/IO/write_correspondences.h>
 #include <pcs/Orl_shape_space.h>
+#include <pcs/core/rotations.h>
 #include <support/drawn.h>
 #include <support/exceptions.h>
 #include <support/orl_spaces.h>
@@ -105,7 +106,7 @@ BOOST_FIXTURE_TEST_CASE(a_tree_that_was_turned_is_itself, Nodes)
         const double angle = degrees * CGAL_PI / 180;
         const Vec3 axis = up.normalized();
         const Eigen::Matrix3d upright =
-            Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), axis).toRotationMatrix();
+            pcs::rotation_between(Vec3::UnitZ(), axis).toRotationMatrix();
         const Tree a = moved(random_tree(seed), upright, Vec3::Zero());
         const Tree b = moved(a, about(axis, angle), Vec3::Zero());
         Space space;

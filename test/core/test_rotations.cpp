@@ -52,6 +52,24 @@ BOOST_AUTO_TEST_CASE(exp_is_the_rotation_about_the_axis)
   }
 }
 
+BOOST_AUTO_TEST_CASE(the_smallest_rotation_between_two_directions)
+{
+  std::mt19937 random(2);
+  for (const double angle :
+       {0.0, 1e-12, 1e-3, 2.0, pi - 1e-4, pi - 1e-6, pi - 1e-8, pi - 1e-11, pi}) {
+    const Vec3 from = pcs_test::random_direction(random), axis = from.unitOrthogonal();
+    const Vec3 to = Eigen::AngleAxisd(angle, axis) * from;
+    const Quaternion q = pcs::rotation_between(3 * from, 0.5 * to);
+    BOOST_TEST_CONTEXT("angle " << angle)
+    {
+      BOOST_TEST(std::abs(q.norm() - 1) < 1e-7);
+      BOOST_TEST((q * from - to).norm() < 1e-7);
+      BOOST_TEST(std::abs(q.vec().dot(from)) < 1e-7); // otherwise the angle would be larger
+      BOOST_TEST(std::abs(pcs::rotation_log(q).norm() - angle) < 1e-7);
+    }
+  }
+}
+
 BOOST_AUTO_TEST_CASE(exp_has_period_4_pi_on_the_double_cover)
 {
   const Vec3 axis = Vec3(1, 2, 3).normalized();

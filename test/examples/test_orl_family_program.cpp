@@ -5,6 +5,7 @@
 
 #include <pcs/IO/read_swc.h>
 #include <pcs/IO/write_swc.h>
+#include <pcs/core/rotations.h>
 #include <support/orl_trees.h>
 
 #include <boost/test/unit_test.hpp>
@@ -254,8 +255,7 @@ BOOST_AUTO_TEST_CASE(trees_that_were_put_down_anew_are_turned_back_on_request)
         Eigen::AngleAxisd(1.3 * k, orl_test::Vec3::UnitY()).toRotationMatrix();
     // y is the vertical, to distinguish it from the other axes.
     const Eigen::Matrix3d upright =
-        Eigen::Quaterniond::FromTwoVectors(orl_test::Vec3::UnitZ(), orl_test::Vec3::UnitY())
-            .toRotationMatrix();
+        pcs::rotation_between(orl_test::Vec3::UnitZ(), orl_test::Vec3::UnitY()).toRotationMatrix();
     pcs::IO::write_swc(path(name + "_up.swc"), orl_test::moved(tree, upright, {1, 2, 3}));
     pcs::IO::write_swc(path(name + "_turned.swc"),
                        orl_test::moved(tree, turn * upright, {1, 2, 3}));

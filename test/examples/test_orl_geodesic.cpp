@@ -4,6 +4,7 @@
 
 #include <pcs/IO/read_swc.h>
 #include <pcs/IO/write_swc.h>
+#include <pcs/core/rotations.h>
 #include <pcs/generators/grow_tree.h>
 #include <pcs/generators/tree_at_age.h>
 #include <support/orl_trees.h>
@@ -466,7 +467,7 @@ BOOST_AUTO_TEST_CASE(a_tree_that_stands_turned_is_found)
   for (const bool is_y_up : {false, true}) {
     const orl_test::Vec3 up = is_y_up ? orl_test::Vec3::UnitY() : orl_test::Vec3::UnitZ();
     const Eigen::Matrix3d upright =
-        Eigen::Quaterniond::FromTwoVectors(orl_test::Vec3::UnitZ(), up).toRotationMatrix();
+        pcs::rotation_between(orl_test::Vec3::UnitZ(), up).toRotationMatrix();
     const Eigen::Matrix3d turn = Eigen::AngleAxisd(CGAL_PI / 2, up).toRotationMatrix();
     pcs::IO::write_swc(path("one.swc"), orl_test::moved(a, upright, {0, 0, 0}));
     pcs::IO::write_swc(path("two.swc"), orl_test::moved(a, turn * upright, {0, 0, 0}));

@@ -43,6 +43,29 @@ inline Eigen::Vector3d rotation_log(const Quaternion& q)
   return lifted_rotation_log(q.w() >= 0 ? q : Quaternion(-q.w(), -q.x(), -q.y(), -q.z()));
 }
 
+/// Unit quaternion of the smallest rotation that turns `from` to `to`, which have any nonzero
+/// lengths. Of opposite directions, it is a half turn about any axis that is orthogonal to them.
+/// This is `Eigen::Quaterniond::FromTwoVectors()`, which takes long to compile for its singular
+/// value decomposition of opposite directions.
+inline Quaternion rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to)
+{
+  const Eigen::Vector3d a = from.normalized(), b = to.normalized(), normal = a.cross(b);
+  const double cosine = b.dot(a);
+  Quaternion q;
+  if (cosine < -1 + 1e-12) {
+    const double w2 = 0.5 * (1 + std::max(cosine, -1.0)), length = normal.norm();
+    const Eigen::Vector3d axis =
+        length > 1e-8 ? Eigen::Vector3d(normal / length) : a.unitOrthogonal();
+    q.w() = std::sqrt(w2);
+    q.vec() = std::sqrt(1 - w2) * axis;
+  } else {
+    const double s = std::sqrt((1 + cosine) * 2), inverse = 1 / s;
+    q.w() = s * 0.5;
+    q.vec() = normal * inverse;
+  }
+  return q;
+}
+
 /*!
   Returns four times the modified Rodrigues parameters of the rotation \p q, which may have any
   nonzero length: `4 tan(angle / 4)` times its axis, with the smaller of its two angles. This is

@@ -5,6 +5,7 @@
 #ifndef PCS_SKELETON_SURFACE_BRANCH_SURFACE_H
 #define PCS_SKELETON_SURFACE_BRANCH_SURFACE_H
 
+#include <pcs/core/rotations.h>
 #include <pcs/internal/constants.h>
 #include <pcs/skeleton/model/Scan.h>
 
@@ -192,7 +193,7 @@ struct Surface_tube
       if (k == 0)
         side[k] = along[k].unitOrthogonal();
       else {
-        const Vec3 s = Eigen::Quaterniond::FromTwoVectors(along[k - 1], along[k]) * side[k - 1];
+        const Vec3 s = rotation_between(along[k - 1], along[k]) * side[k - 1];
         side[k] = (s - s.dot(along[k]) * along[k]).normalized();
       }
     }
