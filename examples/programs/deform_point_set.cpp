@@ -88,7 +88,7 @@ void deform_table(pcs::IO::Point_table& table,
                                  is_inside},
                                 options,
                                 progress,
-                                [](const auto&) {});
+                                [](const Move_others&) {});
   run.samples_reason = reason_of(run.deformation);
   if (do_normals)
     store_normals(table, normals);

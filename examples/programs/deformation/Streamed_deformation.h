@@ -84,7 +84,7 @@ public:
                      m_kept_inside},
                     options,
                     m_progress,
-                    [&](auto& session) { write(session); });
+                    [this](const Move_others& move_others) { write(move_others); });
     m_run.samples_reason = has_all || m_options.number_of_samples > 0
                                ? reason_of(m_run.deformation)
                                : "default, --stream keeps a part of the points";
@@ -229,8 +229,7 @@ private:
                                 "/select: none of its points is kept; raise --stream-points");
   }
 
-  template <class Session>
-  void write(Session& session)
+  void write(const Move_others& move_others)
   {
     const Stopwatch writing;
     pcs::IO::Write_options options;
@@ -238,12 +237,12 @@ private:
     options.faces = m_faces;
     options.keep_coordinate_types = m_splats.has_value();
     if (pcs::IO::internal::format_by_extension(m_options.output) == pcs::IO::File_format::las)
-      choose_las_grid(session, options);
+      choose_las_grid(move_others, options);
     m_run.points_of_handles.assign(m_edit->handles.size(), 0);
     m_run.number_of_invalid_splats = 0; // the grid of LAS needs a pass more
     pcs::IO::Point_writer writer(m_options.output, m_empty.schema(), options);
     check_count(for_each_chunk("writing", [&](Table& chunk, std::uint64_t first) {
-      for (const std::uint32_t h : move(session, chunk, first))
+      for (const std::uint32_t h : move(move_others, chunk, first))
         if (h != no_handle)
           ++m_run.points_of_handles[h];
       writer.append(chunk);
@@ -253,12 +252,11 @@ private:
   }
 
   /// Returns the grid that `write_points()` computes for the whole table from its bounding box.
-  template <class Session>
-  void choose_las_grid(Session& session, pcs::IO::Write_options& options)
+  void choose_las_grid(const Move_others& move_others, pcs::IO::Write_options& options)
   {
     Vec3 low = Vec3::Zero(), high = Vec3::Zero();
     check_count(for_each_chunk("measuring", [&](Table& chunk, std::uint64_t first) {
-      move(session, chunk, first);
+      move(move_others, chunk, first);
       if (first == 0)
         low = high = to_vec3(chunk.points().front());
       for (const auto& point : chunk.points()) {
@@ -273,8 +271,7 @@ private:
   }
 
   /// Moves the points of the next chunk. Returns the handle of each point.
-  template <class Session>
-  std::vector<std::uint32_t> move(Session& session, Table& chunk, std::uint64_t first)
+  std::vector<std::uint32_t> move(const Move_others& move_others, Table& chunk, std::uint64_t first)
   {
     if (first == 0)
       m_next_kept = 0;
@@ -304,17 +301,10 @@ private:
       } else if (is_inside.empty() || is_inside[i])
         others.push_back(i);
 
-    const auto np = pcs::parameters::point_map(Point_map{&chunk.points()});
-    const auto apply = [&](const auto& np_of_points) {
-      if (do_normals())
-        session.apply(others, np_of_points.normal_map(Normal_map{&normals}));
-      else
-        session.apply(others, np_of_points);
-    };
-    if (m_splats)
-      apply(np.gradient_map(Gradient_map{&gradients}));
-    else
-      apply(np);
+    move_others({others,
+                 chunk.points(),
+                 do_normals() ? &normals : nullptr,
+                 m_splats ? &gradients : nullptr});
     check_range(*m_edit, chunk, first);
     if (do_normals())
       store_normals(chunk, normals);

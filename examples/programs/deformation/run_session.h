@@ -26,6 +26,7 @@
 #include <numeric>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -129,23 +130,51 @@ void add_handles(Session& session, const Edited_points& cloud)
     }
 }
 
-/// Deforms the points, then calls `use(session)`.
-template <class Use>
-pcs::Deformation_report run_session(const Edited_points& cloud,
-                                    const Options& options,
-                                    Progress_line& progress,
-                                    const Use& use)
+/// Points of another range, at rest, which follow the deformed ones.
+struct Following_points
+{
+  std::vector<std::size_t>& indices; ///< of those to move
+  std::vector<pcs::IO::Point_table::Point_3>& points;
+  Normal_vectors* normals;                 ///< null: normals are not deformed
+  std::vector<Eigen::Matrix3d>* gradients; ///< null: not needed
+};
+using Move_others = std::function<void(const Following_points&)>;
+
+template <class Session>
+void move_others(Session& session, const Following_points& others)
+{
+  const auto move = [&](const auto& maps) {
+    if (others.normals != nullptr)
+      session.apply(others.indices, maps.normal_map(Normal_map{others.normals}));
+    else
+      session.apply(others.indices, maps);
+  };
+  const auto maps = pcs::parameters::point_map(Point_map{&others.points});
+  if (others.gradients != nullptr)
+    move(maps.gradient_map(Gradient_map{others.gradients}));
+  else
+    move(maps);
+}
+
+/// Deforms the points, then calls `use` with a function that moves other points.
+inline pcs::Deformation_report run_session(const Edited_points& cloud,
+                                           const Options& options,
+                                           Progress_line& progress,
+                                           const std::function<void(const Move_others&)>& use)
 {
   const char* stage = "preparing";
-  const auto show = [&](double fraction) {
+  const std::function<bool(double)> show = [&](double fraction) {
     progress.show(stage, fraction);
     return true;
   };
   std::vector<std::size_t> indices(cloud.points.size());
   std::iota(indices.begin(), indices.end(), std::size_t(0));
   const std::vector<char> is_fixed = fixed_points(cloud.edit, cloud.handles);
-  const auto run = [&](const auto& np) {
-    pcs::Point_set_deformation session(indices, np);
+  const std::vector<std::size_t> region = numbers_of(cloud.is_inside);
+  const auto run = [&](const auto& maps, const auto& np) {
+    using Session =
+        pcs::Point_set_deformation<std::vector<std::size_t>, std::decay_t<decltype(maps)>>;
+    Session session(indices, np);
     add_handles(session, cloud);
     stage = "deforming";
     const pcs::Deformation_report report = session.deform();
@@ -153,38 +182,37 @@ pcs::Deformation_report run_session(const Edited_points& cloud,
       throw pcs::Invalid_input("a matrix could not be factorised, probably because parts of the "
                                "cloud are too far apart for their size; remove points far away "
                                "from all others, or use more --neighbors");
-    use(session);
+    use([&](const Following_points& others) { move_others(session, others); });
     return report;
   };
-  const auto np = pcs::parameters::point_map(Point_map{&cloud.points, &is_fixed})
-                      .number_of_neighbors(options.number_of_neighbors)
-                      .poisson_ratio(options.model.poisson_ratio)
-                      .stiffness(options.model.stiffness)
-                      .do_preserve_volume(!options.model.is_volume_ignored)
-                      .number_of_iterations(options.model.number_of_iterations)
-                      .tolerance(options.model.tolerance)
-                      .sample_weights(options.model.sample_weights())
-                      .sample_search(options.model.sample_search())
-                      .rotation_field(options.model.rotation_field())
-                      .callback(show);
-  const std::vector<std::size_t> region = numbers_of(cloud.is_inside);
-  const auto run_in_region = [&](const auto& np_of_points) {
-    return cloud.is_inside.empty() ? run(np_of_points)
-                                   : run(np_of_points.region_of_interest(std::cref(region)));
+  const auto run_with_options = [&](const auto& maps) {
+    const auto np = maps.number_of_neighbors(options.number_of_neighbors)
+                        .poisson_ratio(options.model.poisson_ratio)
+                        .stiffness(options.model.stiffness)
+                        .do_preserve_volume(!options.model.is_volume_ignored)
+                        .number_of_iterations(options.model.number_of_iterations)
+                        .tolerance(options.model.tolerance)
+                        .sample_weights(options.model.sample_weights())
+                        .sample_search(options.model.sample_search())
+                        .rotation_field(options.model.rotation_field())
+                        .callback(show);
+    const auto run_in_region = [&](const auto& np_of_region) {
+      return options.number_of_samples > 0
+                 ? run(maps, np_of_region.number_of_samples(options.number_of_samples))
+                 : run(maps, np_of_region);
+    };
+    return cloud.is_inside.empty() ? run_in_region(np)
+                                   : run_in_region(np.region_of_interest(std::cref(region)));
   };
-  const auto run_with_samples = [&](const auto& np_of_points) {
-    return options.number_of_samples > 0
-               ? run_in_region(np_of_points.number_of_samples(options.number_of_samples))
-               : run_in_region(np_of_points);
-  };
-  const auto run_with_normals = [&](const auto& np_of_points) {
+  const auto run_with_normals = [&](const auto& maps) {
     return cloud.normals != nullptr
-               ? run_with_samples(np_of_points.normal_map(Normal_map{cloud.normals, &is_fixed}))
-               : run_with_samples(np_of_points);
+               ? run_with_options(maps.normal_map(Normal_map{cloud.normals, &is_fixed}))
+               : run_with_options(maps);
   };
+  const auto maps = pcs::parameters::point_map(Point_map{&cloud.points, &is_fixed});
   return cloud.gradients != nullptr
-             ? run_with_normals(np.gradient_map(Gradient_map{cloud.gradients, &is_fixed}))
-             : run_with_normals(np);
+             ? run_with_normals(maps.gradient_map(Gradient_map{cloud.gradients, &is_fixed}))
+             : run_with_normals(maps);
 }
 
 /// Throws if a coordinate is not finite. Points are numbered from `first` on.
