@@ -55,28 +55,61 @@ using Map_parameters = std::conditional_t<
     NamedParameters,
     parameters::Default_named_parameters>;
 
-/*!
-  Reads and writes the points of a range through the property maps of a chain of named parameters.
-  Checks the concepts of range and maps. If `is_ok` is false, a `static_assert` has failed, and no
-  member should be instantiated.
-*/
+template <class PointRange,
+          class PointMap,
+          class NormalMap,
+          class VectorMap,
+          class TensorMap,
+          class GradientMap>
+class Map_access;
+
+namespace internal {
+
+/// The map that is given for `Tag`, or `Fallback`.
+template <class NamedParameters, class Tag, class Fallback = No_map>
+using Given_map =
+    std::decay_t<decltype(pcs::internal::choose(std::declval<const NamedParameters&>(),
+                                                std::declval<Tag>(),
+                                                std::declval<Fallback>()))>;
+
+} // namespace internal
+
+/// The access through the maps of a chain of named parameters. Chains with the same maps share it,
+/// and what is compiled for it.
 template <class PointRange, class NamedParameters>
-class Point_access
+using Point_access =
+    Map_access<PointRange,
+               internal::Given_map<
+                   NamedParameters,
+                   CGAL::internal_np::point_t,
+                   CGAL::Identity_property_map<std::decay_t<pcs::Element_reference<PointRange>>>>,
+               internal::Given_map<NamedParameters, CGAL::internal_np::normal_t>,
+               internal::Given_map<NamedParameters, pcs::internal_np::vector_map_t>,
+               internal::Given_map<NamedParameters, pcs::internal_np::tensor_map_t>,
+               internal::Given_map<NamedParameters, pcs::internal_np::gradient_map_t>>;
+
+/*!
+  Reads and writes the points of a range through property maps; `internal::No_map` stands for a map
+  that is not given. Checks the concepts of range and maps. If `is_ok` is false, a `static_assert`
+  has failed, and no member should be instantiated.
+*/
+template <class PointRange,
+          class PointMap,
+          class NormalMap,
+          class VectorMap,
+          class TensorMap,
+          class GradientMap>
+class Map_access
 {
   using Element = pcs::Element_reference<PointRange>;
   using Value = std::decay_t<Element>;
-  template <class Tag, class Fallback>
-  using Given_map =
-      std::decay_t<decltype(pcs::internal::choose(std::declval<const NamedParameters&>(),
-                                                  std::declval<Tag>(),
-                                                  std::declval<Fallback>()))>;
 
 public:
-  using Point_map = Given_map<CGAL::internal_np::point_t, CGAL::Identity_property_map<Value>>;
-  using Normal_map = Given_map<CGAL::internal_np::normal_t, internal::No_map>;
-  using Vector_map = Given_map<pcs::internal_np::vector_map_t, internal::No_map>;
-  using Tensor_map = Given_map<pcs::internal_np::tensor_map_t, internal::No_map>;
-  using Gradient_map = Given_map<pcs::internal_np::gradient_map_t, internal::No_map>;
+  using Point_map = PointMap;
+  using Normal_map = NormalMap;
+  using Vector_map = VectorMap;
+  using Tensor_map = TensorMap;
+  using Gradient_map = GradientMap;
 
   static constexpr bool has_normals = !std::is_same_v<Normal_map, internal::No_map>;
   static constexpr bool has_vectors = !std::is_same_v<Vector_map, internal::No_map>;
@@ -160,21 +193,16 @@ public:
       return is_memory_map<Point_map, Element>();
   }();
 
-  /// Whether another chain of named parameters has maps of the same types.
-  template <class OtherParameters>
+  /// Whether a chain of named parameters has maps of these types.
+  template <class NamedParameters>
   static constexpr bool has_maps_of()
   {
-    using Other = Point_access<PointRange, OtherParameters>;
-    return std::is_same_v<Point_map, typename Other::Point_map> &&
-           std::is_same_v<Normal_map, typename Other::Normal_map> &&
-           std::is_same_v<Vector_map, typename Other::Vector_map> &&
-           std::is_same_v<Tensor_map, typename Other::Tensor_map> &&
-           std::is_same_v<Gradient_map, typename Other::Gradient_map>;
+    return std::is_same_v<Map_access, Point_access<PointRange, NamedParameters>>;
   }
 
-  /// Keeps a reference to `points`, and copies of the maps, which are those of `NamedParameters`.
+  /// Keeps a reference to `points`, and copies of the maps of `np`.
   template <class GivenParameters>
-  Point_access(PointRange& points, const GivenParameters& np) : m_points(&points)
+  Map_access(PointRange& points, const GivenParameters& np) : m_points(&points)
   {
     static_assert(has_maps_of<GivenParameters>(),
                   "pcs::Point_set_deformation: the second template argument must be a chain of "
