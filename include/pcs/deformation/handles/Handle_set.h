@@ -10,8 +10,8 @@
 #include <pcs/deformation/body/Sampled_body.h>
 #include <pcs/deformation/handles/Handle_targets.h>
 #include <pcs/deformation/model/Elastic_network.h>
-#include <pcs/deformation/model/Harmonic_system.h>
 #include <pcs/deformation/model/Local_frame.h>
+#include <pcs/deformation/model/Node_constraints.h>
 #include <pcs/internal/text.h>
 
 #include <Eigen/Core>

@@ -8,7 +8,7 @@
 #include <pcs/core/Deformation_report.h>
 #include <pcs/deformation/body/Sampled_body.h>
 #include <pcs/deformation/handles/Handle_set.h>
-#include <pcs/deformation/model/Harmonic_system.h>
+#include <pcs/deformation/model/Node_constraints.h>
 #include <pcs/deformation/model/Point_blocks.h>
 #include <pcs/internal/lanes.h>
 #include <pcs/internal/parallel.h>

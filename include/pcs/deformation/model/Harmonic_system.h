@@ -6,6 +6,7 @@
 #define PCS_DEFORMATION_MODEL_HARMONIC_SYSTEM_H
 
 #include <pcs/deformation/model/Elastic_network.h>
+#include <pcs/deformation/model/Node_constraints.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/linear_algebra/Sparse_cholesky.h>
 #include <pcs/linear_algebra/graph_laplacian.h>
@@ -16,39 +17,6 @@
 
 namespace pcs {
 namespace deformation {
-
-/// Constraint of a node: the number of its handle, or one of the two values below.
-using Node_constraint = std::int32_t;
-constexpr Node_constraint free_node = -1;
-/// The node belongs to a component without handle and keeps its position.
-constexpr Node_constraint unreached_node = -2;
-
-/// The constraint of each node, and the softness of each handle.
-struct Node_constraints
-{
-  std::vector<Node_constraint> handle_of_node;
-  /// Per handle: 0 prescribes its nodes exactly; a positive value is the weight of the springs of
-  /// its nodes, relative to the sum of the edge weights of a node. [-]
-  std::vector<double> softness_weight;
-
-  bool is_prescribed(std::size_t node) const
-  {
-    const Node_constraint h = handle_of_node[node];
-    return h >= 0 && !(softness_weight[static_cast<std::size_t>(h)] > 0);
-  }
-  bool is_soft(std::size_t node) const
-  {
-    const Node_constraint h = handle_of_node[node];
-    return h >= 0 && softness_weight[static_cast<std::size_t>(h)] > 0;
-  }
-  /// Returns the weight of the spring of a soft node; `degree` is the sum of its edge weights. A
-  /// node without edges has only its spring.
-  double soft_weight(std::size_t node, double degree) const
-  {
-    return softness_weight[static_cast<std::size_t>(handle_of_node[node])] *
-           (degree > 0 ? degree : 1);
-  }
-};
 
 /// Rows of the unknowns, which are the free and soft nodes in increasing order.
 struct Free_rows

@@ -6,7 +6,7 @@
 #define PCS_DEFORMATION_UPSAMPLING_DIRTY_HANDLES_H
 
 #include <pcs/core/Similarity.h>
-#include <pcs/deformation/model/Harmonic_system.h>
+#include <pcs/deformation/model/Node_constraints.h>
 
 #include <cstddef>
 #include <vector>

@@ -5,7 +5,7 @@
 #ifndef PCS_DEFORMATION_UPSAMPLING_WRITE_POINTS_H
 #define PCS_DEFORMATION_UPSAMPLING_WRITE_POINTS_H
 
-#include <pcs/deformation/model/Harmonic_system.h>
+#include <pcs/deformation/model/Node_constraints.h>
 #include <pcs/deformation/upsampling/Moved_point_writer.h>
 #include <pcs/internal/Stage_timer.h>
 #include <pcs/internal/parallel.h>
