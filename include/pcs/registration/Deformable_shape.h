@@ -8,6 +8,7 @@
 #include <pcs/core/rotations.h>
 #include <pcs/deformation/body/Sampled_body.h>
 #include <pcs/deformation/model/Elastic_network.h>
+#include <pcs/registration/Fit_options.h>
 
 #include <Eigen/Core>
 
@@ -19,9 +20,6 @@ namespace pcs {
 namespace registration {
 
 using Vec3 = Eigen::Vector3d;
-
-/// Largest number of samples that carry a point. [count]
-constexpr std::size_t carriers_of_point = 4;
 
 /// The samples that carry a point, with weights that sum to one.
 struct Carriers

@@ -79,6 +79,8 @@ namespace registration {
 
 //! default number of samples of the deformation [count]
 constexpr std::size_t default_number_of_fit_samples = 500;
+/// Largest number of samples that carry a point. [count]
+constexpr std::size_t carriers_of_point = 4;
 //! default of `fitting_length` [extents of the source]
 constexpr double default_fitting_length = 0.02;
 

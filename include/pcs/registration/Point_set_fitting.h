@@ -14,13 +14,10 @@
 #include <pcs/core/parameters/read_parameter.h>
 #include <pcs/deformation/access/Point_access.h>
 #include <pcs/internal/Stage_timer.h>
-#include <pcs/internal/median.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
 #include <pcs/registration/Fit_options.h>
 #include <pcs/registration/Fit_session.h>
-#include <pcs/registration/Fit_target.h>
-#include <pcs/registration/closest_matches.h>
 #include <pcs/registration/read_fit_input.h>
 
 #include <Eigen/Core>
@@ -223,15 +220,15 @@ public:
     internal::check(m_access.size() == m_session->number_of_points(),
                     function,
                     "the number of source points has changed since the construction");
-    registration::Read_cloud cloud = registration::read_target(target, np, function);
-    registration::localize(m_session->frame(), m_session->extent(), function, cloud.points);
+    registration::Fit_input input = registration::read_target(target, np, function);
+    registration::localize(m_session->frame(), m_session->extent(), function, input.points);
     std::vector<Landmark> given;
     using Tag = internal_np::landmarks_t;
     static_assert(internal::is_parameter_v<std::vector<Landmark>, TargetParameters, Tag>,
                   "pcs::fit_point_set(): `landmarks` must be a std::vector<pcs::Landmark>");
     internal::read_parameter(np, Tag(), given);
-    const auto landmarks = registration::local_landmarks(given, *m_session, function);
-    return run(std::move(cloud), landmarks, start, report);
+    input.landmarks = registration::local_landmarks(given, *m_session, function);
+    return run(input, start, report);
   }
 
   /// Restores the source at rest, with all bits of its positions.
@@ -250,7 +247,7 @@ public:
     });
   }
 
-  std::size_t number_of_samples() const { return m_session ? m_session->body().network.size() : 0; }
+  std::size_t number_of_samples() const { return m_session ? m_session->number_of_samples() : 0; }
 
 private:
   template <class GivenParameters>
@@ -309,45 +306,23 @@ private:
     };
   }
 
-  Fit_report run(registration::Read_cloud cloud,
-                 const std::vector<registration::Local_landmark>& landmarks,
-                 Solver_start start,
-                 Fit_report report)
+  Fit_report run(registration::Fit_input& input, Solver_start start, Fit_report report)
   {
     internal::Progress progress(m_callback);
-    registration::Fit_target target;
-    {
-      const internal::Stage_timer timer(report.seconds.preparation);
-      // Only normals of both clouds have comparable sides.
-      const bool is_oriented = Access::has_normals && !cloud.normals.empty();
-      m_options.is_oriented = is_oriented;
-      registration::normalize(cloud.normals);
-      target.template build<ConcurrencyTag>(cloud.points,
-                                            cloud.normals,
-                                            m_session->number_of_fine_points());
-    }
-    report.number_of_target_points = cloud.points.size();
-    if (!progress(0.2))
-      return report;
+    // Only normals of both clouds have comparable sides.
+    m_options.is_oriented = Access::has_normals && !input.normals.empty();
+    registration::normalize(input.normals);
+    report.number_of_target_points = input.points.size();
     const bool is_warm = start == Solver_start::warm && m_has_shape;
-    const registration::Shape_state before = m_session->shape().state;
-    if (!is_warm)
-      m_session->put_at_rest();
-    report.status = m_session->fit(target, landmarks, m_options, is_warm, report, progress);
-    const bool is_solved =
-        report.status == Status::converged || report.status == Status::iteration_limit;
-    if (is_solved && !progress(1)) // the last call: afterwards, points are written
-      report.status = Status::cancelled;
-    if (report.status == Status::cancelled || report.status == Status::numerical_failure) {
-      m_session->restore(before);
-      return report;
-    }
-    m_has_shape = true;
-    {
-      const internal::Stage_timer timer(report.seconds.writing);
+    const auto write = [this] {
+      m_has_shape = true;
       write_points();
-      describe(target, landmarks, report);
-    }
+    };
+    const auto matches = m_session->fit(input, m_options, is_warm, write, report, progress);
+    const internal::Stage_timer timer(report.seconds.writing);
+    for (const Match_writer* put_matches : {&m_put_is_matched, &m_put_match})
+      if (*put_matches && !matches.empty())
+        (*put_matches)(matches);
     return report;
   }
 
@@ -356,53 +331,13 @@ private:
     internal::for_each_index<ConcurrencyTag>(
         m_session->number_of_points(),
         [&](std::size_t i) {
-          const Eigen::Matrix3d gradient = m_session->shape().linear(m_session->carriers(i));
+          const Eigen::Matrix3d gradient = m_session->gradient(i);
           Vec3 normal = Vec3::Zero();
           if constexpr (Access::has_normals)
-            normal = m_normals[i].norm() * Session::moved_normal(gradient, m_normals[i]);
-          m_access.write(i, m_session->frame().to_world(m_session->position(i)), normal, gradient);
+            normal = m_normals[i].norm() * registration::moved_normal(gradient, m_normals[i]);
+          m_access.write(i, m_session->position(i), normal, gradient);
         },
         256);
-  }
-
-  void describe(const registration::Fit_target& target,
-                const std::vector<registration::Local_landmark>& landmarks,
-                Fit_report& report)
-  {
-    const double unit = m_session->frame().unit;
-    std::vector<registration::Closest_match> matches;
-    m_session->match_all(target, matches);
-    std::vector<double> residuals;
-    std::vector<std::ptrdiff_t> index(matches.size());
-    double squares = 0, moved = 0;
-    for (std::size_t i = 0; i < matches.size(); ++i) {
-      const bool is_matched = matches[i].weight > 0;
-      if (is_matched) {
-        residuals.push_back(std::abs(matches[i].plane_distance));
-        squares += residuals.back() * residuals.back();
-      }
-      moved += (m_session->position(i) - m_session->rest(i)).squaredNorm();
-      index[i] = is_matched ? static_cast<std::ptrdiff_t>(target.input[matches[i].index]) : -1;
-    }
-    for (const Match_writer* put_matches : {&m_put_is_matched, &m_put_match})
-      if (*put_matches)
-        (*put_matches)(index);
-    report.number_of_samples = number_of_samples();
-    report.number_of_matched = residuals.size();
-    if (residuals.empty())
-      report.rms_residual = report.median_residual = std::numeric_limits<double>::quiet_NaN();
-    else {
-      report.rms_residual = unit * std::sqrt(squares / static_cast<double>(residuals.size()));
-      report.median_residual = unit * internal::lower_median(residuals);
-    }
-    report.rms_displacement = unit * std::sqrt(moved / static_cast<double>(matches.size()));
-    for (const auto& l : landmarks)
-      report.largest_landmark_gap =
-          std::max(report.largest_landmark_gap,
-                   unit * (m_session->position(l.index) - l.target).norm());
-    const double extent = unit * m_session->extent();
-    report.is_plausible = report.matched_share() >= Fit_report::least_matched_share &&
-                          report.median_residual <= Fit_report::largest_plausible_residual * extent;
   }
 
   Access m_access;

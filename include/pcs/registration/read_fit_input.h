@@ -14,6 +14,7 @@
 #include <pcs/deformation/model/Local_frame.h>
 #include <pcs/deformation/model/Sampling_options.h>
 #include <pcs/internal/text.h>
+#include <pcs/neighborhood/Neighbor_lists.h>
 #include <pcs/registration/Fit_options.h>
 #include <pcs/registration/Fit_session.h>
 
@@ -167,19 +168,13 @@ std::vector<Local_landmark> local_landmarks(const std::vector<Landmark>& landmar
   return result;
 }
 
-/// Points, and normals or nothing, in double precision.
-struct Read_cloud
-{
-  std::vector<Vec3> points, normals;
-};
-
-/// Reads a cloud that is not changed. Throws `Invalid_input` if it has too few points, or a point
-/// or normal is not finite.
+/// Reads the points and normals of a cloud that is not changed. Throws `Invalid_input` if it has too
+/// few points, or a point or normal is not finite.
 template <class PointRange, class NamedParameters>
-Read_cloud
+Fit_input
 read_target(const PointRange& target, const NamedParameters& np, const std::string& caller)
 {
-  Read_cloud result;
+  Fit_input result;
   using Element = pcs::Element_reference<const PointRange>;
   using Value = std::decay_t<Element>;
   const auto point_map =
