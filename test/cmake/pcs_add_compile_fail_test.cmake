@@ -2,7 +2,6 @@
 add_library(pcs_header_flags INTERFACE)
 target_compile_options(pcs_header_flags INTERFACE $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-O0>)
 add_library(pcs_syntax_flags INTERFACE)
-target_link_libraries(pcs_syntax_flags INTERFACE pcs_header_flags)
 target_compile_options(pcs_syntax_flags INTERFACE $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-fsyntax-only>)
 
 # A test that builds a target of this build tree, one at a time.
@@ -16,8 +15,9 @@ endfunction()
 #
 # With PCS_BREAK_THE_RULE defined, compile_fail/<rule>.cpp must make the compiler print <sentence> (a regular expression)
 # as its first error. That it compiles as it is, pcs_add_compile_accepted_test() checks. Parsing the headers takes longest,
-# so the sources of one algorithm are compiled as one, a namespace each, below all their headers; a source that sets
-# macros is compiled alone. The test compile_fail.errors.<algorithm> finds the first error of each rule.
+# so the sources of one algorithm are compiled as one, a namespace each, below all their headers, with the precompiled
+# header of the tests; a source that sets macros is compiled alone. The test compile_fail.errors.<algorithm> finds the
+# first error of each rule.
 set(pcs_rules_dir ${CMAKE_CURRENT_SOURCE_DIR}/compile_fail)
 set(pcs_rule_errors_dir ${CMAKE_CURRENT_BINARY_DIR}/compile_fail)
 function(pcs_add_compile_fail_test rule sentence)
@@ -30,6 +30,7 @@ function(pcs_add_compile_fail_test rule sentence)
   if(macros OR NOT doors)
     set(group ${rule})
     set_property(GLOBAL PROPERTY pcs_rule_source_of_${group} ${source})
+    set_source_files_properties(${source} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
   else()
     list(GET doors 0 door)
     set(group skeleton)
@@ -82,7 +83,9 @@ function(pcs_add_compile_accepted_test)
 
   foreach(library compile_fail_accepted compile_fail_rejected)
     add_library(${library} OBJECT EXCLUDE_FROM_ALL ${sources})
-    target_link_libraries(${library} PRIVATE ${PCS_LIBRARY} pcs_syntax_flags)
+    target_link_libraries(${library} PRIVATE pcs_test_flags pcs_syntax_flags)
+    target_compile_options(${library} PRIVATE $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-w>)
+    target_precompile_headers(${library} REUSE_FROM pcs_test_pch)
     set_target_properties(${library} PROPERTIES EXPORT_COMPILE_COMMANDS ON UNITY_BUILD OFF)
   endforeach()
   target_compile_definitions(compile_fail_rejected PRIVATE PCS_BREAK_THE_RULE)

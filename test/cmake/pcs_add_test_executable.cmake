@@ -22,11 +22,15 @@ file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/test_pch.cpp "")
 add_library(pcs_test_pch OBJECT ${CMAKE_CURRENT_BINARY_DIR}/test_pch.cpp)
 target_link_libraries(pcs_test_pch PRIVATE pcs_test_flags)
 target_precompile_headers(pcs_test_pch PRIVATE
+  <CGAL/Aff_transformation_3.h>
   <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+  <CGAL/Named_function_parameters.h>
   <CGAL/Simple_cartesian.h>
+  <boost/graph/adjacency_list.hpp>
   <boost/test/unit_test.hpp>
-  <Eigen/SparseCholesky>
-  <algorithm> <array> <cmath> <random> <sstream> <string> <vector>)
+  <Eigen/Eigenvalues> <Eigen/Geometry> <Eigen/SparseCholesky>
+  <algorithm> <array> <cmath> <filesystem> <fstream> <functional> <map> <optional> <random> <sstream> <string>
+  <unordered_map> <vector>)
 
 # pcs_add_test_executable(<name> SOURCES <file>... SUITES <suite>...
 #                         [FOLDER <folder>] [LABELS <label>...] [LIBRARIES <target>...])
