@@ -26,8 +26,7 @@ target_precompile_headers(pcs_test_pch PRIVATE
   <CGAL/Exact_predicates_inexact_constructions_kernel.h>
   <CGAL/Named_function_parameters.h>
   <CGAL/Simple_cartesian.h>
-  <boost/graph/adjacency_list.hpp>
-  <boost/test/unit_test.hpp>
+  <boost/container/small_vector.hpp> <boost/graph/adjacency_list.hpp> <boost/test/unit_test.hpp>
   <Eigen/Eigenvalues> <Eigen/Geometry> <Eigen/SparseCholesky>
   <algorithm> <array> <cmath> <filesystem> <fstream> <functional> <map> <optional> <random> <sstream> <string>
   <unordered_map> <vector>)
