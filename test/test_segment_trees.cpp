@@ -248,6 +248,42 @@ BOOST_AUTO_TEST_CASE(feet_far_above_the_ground_are_named)
   BOOST_TEST(sentences[0].find("number 1") != std::string::npos);
 }
 
+BOOST_AUTO_TEST_CASE(posts_and_walls_are_named)
+{
+  pcs::Segmentation_report report;
+  report.breast_height = 1.3;
+  for (const std::array<double, 3>& deviations :
+       {std::array<double, 3>{0.6, 0.8, 2.0}, {0.07, 0.08, 0.9}, {0.02, 1.1, 2.0}}) {
+    pcs::Segmented_tree tree;
+    tree.height = 8;
+    tree.radius = 0.1;
+    tree.deviations = deviations;
+    report.trees.push_back(tree);
+  }
+  const auto reasons = pcs::warnings_of_trees(report);
+  BOOST_TEST_REQUIRE(reasons.size() == 3u);
+  BOOST_TEST(reasons[0].empty());
+  BOOST_TEST_REQUIRE(reasons[1].size() == 1u);
+  BOOST_TEST(reasons[1][0].find("posts") != std::string::npos);
+  BOOST_TEST_REQUIRE(reasons[2].size() == 1u);
+  BOOST_TEST(reasons[2][0].find("walls") != std::string::npos);
+}
+
+BOOST_AUTO_TEST_CASE(a_post_is_a_tree_without_a_crown)
+{
+  // a post of 3 m, and a tree with two horizontal branches
+  Cloud points = cylinder(3000, 0.1, 3);
+  append(points, cylinder(3000, 0.1, 3, Point(6, 0, 0), Vector(0, 0, 1)));
+  append(points, cylinder(2000, 0.04, 2, Point(6, 0, 2.5), Vector(1, 0.2, 0.3)));
+  append(points, cylinder(2000, 0.04, 2, Point(6, 0, 2.5), Vector(-0.2, -1, 0.3)));
+  Labels trees;
+  const auto report = segment(points, trees);
+  BOOST_TEST_REQUIRE(report.trees.size() == 2u);
+  const auto reasons = pcs::warnings_of_trees(report);
+  for (std::size_t t = 0; t < 2; ++t)
+    BOOST_TEST(reasons[t].size() == (report.trees[t].foot[0] < 3 ? 1u : 0u));
+}
+
 BOOST_AUTO_TEST_CASE(trees_too_thin_for_their_height_are_named)
 {
   pcs::Segmentation_report report;

@@ -148,6 +148,7 @@ nlohmann::ordered_json to_json(const Options& options, const pcs::Segmentation_r
                                   {"diameter_at_breast_height", tree.diameter_at_breast_height},
                                   {"height", tree.height},
                                   {"foot_above_ground", tree.foot_above_ground},
+                                  {"deviations", tree.deviations},
                                   {"points", tree.number_of_points}};
     if (has_file[t])
       row["file"] = Files_of_trees(options.input, options.folder).path_of(t);

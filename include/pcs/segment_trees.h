@@ -15,6 +15,7 @@
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
 #include <pcs/internal/unit_of_height.h>
+#include <pcs/linear_algebra/small_symmetric.h>
 #include <pcs/skeleton/forest/Stand.h>
 #include <pcs/skeleton/input/Session_hints.h>
 #include <pcs/skeleton/input/caller_types.h>
@@ -23,8 +24,11 @@
 
 #include <CGAL/property_map.h>
 
+#include <Eigen/Core>
+
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <functional>
 #include <iterator>
@@ -48,6 +52,8 @@ struct Segmented_tree
   double height = 0;                    ///< of its highest point above the foot [L]
   //! height of the lower end of this axis above the ground; 0 if the ground is not known [L]
   double foot_above_ground = 0;
+  //! standard deviations of its points along their principal axes, in ascending order [L]
+  std::array<double, 3> deviations{};
 };
 
 //! \ingroup PkgPcsSkeletonRef
@@ -82,6 +88,9 @@ inline std::vector<Tree_doubt> doubts_of_trees(const Segmentation_report& r)
   constexpr double max_diameter = 0.1;   // stem diameter / height; trees: 0.01 to 0.05 [-]
   constexpr double min_diameter = 0.003; // at breast height / height; slender trees: 0.007 [-]
   constexpr double max_foot = 0.1; // height of the lower end of the stem / height of the tree [-]
+  // deviations across a bare stem: 0.35 diameters; across a plane, relative to those within: 0.01
+  // to 0.05; trees with crowns: more than one diameter, and 0.3 [-]
+  constexpr double bare = 0.5, flat = 0.1;
   // a tree without its top: height and radius, in medians of a stand of at least this many trees
   constexpr double cut_height = 0.6, full_radius = 0.8;
   constexpr std::size_t min_trees = 4;
@@ -113,6 +122,15 @@ inline std::vector<Tree_doubt> doubts_of_trees(const Segmentation_report& r)
   add("with a stem that begins far above the ground; its lower part may be missing or too sparse, "
       "so foot, diameter and height may be wrong",
       [&](const Segmented_tree& t) { return t.foot_above_ground > max_foot * t.height; });
+  const auto is_bare = [&](const Segmented_tree& t) {
+    return !is_low(t) && t.deviations[1] > 0 &&
+           t.deviations[1] < bare * std::max(2 * t.radius, t.diameter_at_breast_height);
+  };
+  add("without a crown, perhaps posts or bare stems", is_bare);
+  add("with all points in a plane, perhaps walls or fences", [&](const Segmented_tree& t) {
+    return !is_low(t) && !is_bare(t) && t.deviations[1] > 0 &&
+           t.deviations[0] < flat * t.deviations[1];
+  });
   if (r.trees.size() < min_trees)
     return doubts;
   std::vector<double> heights, radii, ratios;
@@ -190,6 +208,8 @@ void write_trees(const skeleton::Stand& stand,
     report.trees.back().foot_above_ground = tree.above_ground;
   }
   report.number_of_low_plants = stand.number_of_low_plants;
+  std::vector<Eigen::Vector3d> sums(report.trees.size(), Eigen::Vector3d::Zero());
+  std::vector<Eigen::Matrix3d> squares(report.trees.size(), Eigen::Matrix3d::Zero());
   std::size_t i = 0;
   for (auto it = std::begin(points); it != std::end(points); ++it, ++i) {
     const skeleton::Index tree = stand.tree_of_input[i];
@@ -199,12 +219,22 @@ void write_trees(const skeleton::Stand& stand,
       Segmented_tree& found = report.trees[tree];
       ++found.number_of_points;
       const skeleton::Vec3 p = skeleton::internal::to_vec3(get(point_map, *it));
-      found.height = std::max(found.height, up.dot(p - stand.trees[tree].foot));
+      const skeleton::Vec3 d = p - stand.trees[tree].foot;
+      found.height = std::max(found.height, up.dot(d));
+      sums[tree] += d;
+      squares[tree] += d * d.transpose();
     }
     put(point_tree_map,
         *it,
         static_cast<pcs::Map_value<PointTreeMap>>(tree == skeleton::none ? npos
                                                                          : std::size_t(tree)));
+  }
+  for (std::size_t t = 0; t < report.trees.size(); ++t) {
+    const double n = double(report.trees[t].number_of_points);
+    const Eigen::Matrix3d covariance = squares[t] / n - (sums[t] / n) * (sums[t] / n).transpose();
+    const Eigen::Vector3d values = linear_algebra::symmetric_eigen<3>(covariance).values;
+    for (Eigen::Index k = 0; k < 3; ++k)
+      report.trees[t].deviations[std::size_t(k)] = std::sqrt(std::max(0.0, values(k)));
   }
 }
 
