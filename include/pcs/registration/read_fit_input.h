@@ -168,8 +168,8 @@ std::vector<Local_landmark> local_landmarks(const std::vector<Landmark>& landmar
   return result;
 }
 
-/// Reads the points and normals of a cloud that is not changed. Throws `Invalid_input` if it has too
-/// few points, or a point or normal is not finite.
+/// Reads the points and normals of a cloud that is not changed. Throws `Invalid_input` if it has
+/// too few points, or a point or normal is not finite.
 template <class PointRange, class NamedParameters>
 Fit_input
 read_target(const PointRange& target, const NamedParameters& np, const std::string& caller)

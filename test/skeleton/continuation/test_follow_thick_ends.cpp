@@ -91,29 +91,6 @@ public:
     set.axes[1].number_of_points += set.axes[2].number_of_points;
     set.axes.pop_back();
   }
-  /// Puts the root at the outer end of the limb, so that its axis leads to the part with few points,
-  /// where it becomes a strand on the surface.
-  void end_in_strand()
-  {
-    root.clear();
-    const Vec3 end = scan.frame.to_local(outer * m_along + m_seat);
-    for (Index i = 0; i < scan.size(); ++i)
-      if ((scan.points[i] - end).norm() * scan.frame.unit < 1.5 * limb_radius)
-        root.push_back(i);
-    Axis& axis = set.axes[1].axis;
-    const auto last = static_cast<Index>(axis.size() - 2);
-    std::reverse(axis.begin(), axis.end());
-    for (std::size_t i = 0; i < scan.size(); ++i)
-      if (set.axis_of_point[i] == 1)
-        set.segment_of_point[i] = last - set.segment_of_point[i];
-    const Vec3 across = limb_radius / scan.frame.unit * m_along.unitOrthogonal();
-    for (const double z : {0.7, 0.6, 0.5, 0.4, 0.3}) {
-      Axis_node node;
-      node.point = scan.frame.to_local(z * m_along + m_seat) + across;
-      node.radius = 0.05 * limb_radius / scan.frame.unit;
-      axis.push_back(node);
-    }
-  }
   Vec3 seat() const { return scan.frame.to_local(m_seat); }
 
 private:
@@ -224,26 +201,6 @@ BOOST_AUTO_TEST_CASE(an_axis_across_a_fork_is_continued_from_its_lowest_place)
   BOOST_TEST((base - seat).norm() * unit < trunk_radius + limb_radius);
   BOOST_TEST((limb.set.axes[2].axis.front().point - seat).norm() * unit < inner + 4 * limb_radius);
   BOOST_TEST(limb.set.axes[2].number_of_points > 100u);
-}
-
-BOOST_AUTO_TEST_CASE(a_tip_that_becomes_a_strand_is_continued)
-{
-  Limb limb(70, 0);
-  limb.end_in_strand();
-  const Followed_ends found = limb.follow();
-  BOOST_TEST(found.number_of_ends >= 1u);
-  const double unit = limb.scan.frame.unit;
-  const Vec3 along(0.8, 0, 0.6);
-  double covered = 0; // of the part with few points
-  for (const Fitted_axis& axis : limb.set.axes)
-    for (std::size_t k = 1; k < axis.axis.size(); ++k) {
-      const Vec3 d = unit * (axis.axis[k].point - limb.seat());
-      const double z = d.dot(along);
-      if (z > trunk_radius && z < inner && (d - z * along).norm() < 0.2 * limb_radius &&
-          std::abs(unit * axis.axis[k].radius / limb_radius - 1) < 0.2)
-        covered += unit * (axis.axis[k].point - axis.axis[k - 1].point).norm();
-    }
-  BOOST_TEST(covered > 0.8 * (inner - trunk_radius));
 }
 
 BOOST_AUTO_TEST_CASE(held_thick_axes_keep_their_points)

@@ -62,19 +62,18 @@ public:
       if (set.is_covered(i))
         m_points[set.axis_of_point[i]].push_back(i);
     find_thick_axes();
-    for (const Index a : m_thick)
+    for (const Index a : m_thick) {
       measure(a);
-    hold_again();
+      m_is_held[a] = is_at_root(a);
+    }
+    hold_more();
   }
 
-  const Scan& scan() const { return m_scan; }
-  const Chain_options& chains() const { return m_chains; }
   const Thick_end_options& rules() const { return m_rules; }
   const std::vector<Fitted_axis>& axes() const { return m_set.axes; }
   /// Returns the axes that may have thick bases: first those of the set, thickest first, then the
   /// added ones.
   const std::vector<Index>& thick() const { return m_thick; }
-  double thinnest() const { return m_thinnest; }
   bool is_held(Index a) const { return m_is_held[a] != 0; }
 
   /// Returns a continuation of lines through the points of the scan.
@@ -95,13 +94,6 @@ public:
   void hold(Index a)
   {
     m_is_held[a] = 1;
-    hold_more();
-  }
-  /// Decides again which axes are held.
-  void hold_again()
-  {
-    for (const Index a : m_thick)
-      m_is_held[a] = is_at_root(a);
     hold_more();
   }
   /// From now on, axes beyond short gaps are held, too.
@@ -125,19 +117,6 @@ public:
       return radius >= m_rules.touched * end.radius &&
              (gap < m_rules.touch * end.radius ||
               (m_may_leave_gaps && gap < m_rules.least * end.radius && is_ahead(d, along)));
-    });
-  }
-  /// Returns whether a node lies in the middle of another axis of similar thickness.
-  bool is_in_other(Index a, const Axis_node& node) const
-  {
-    return std::any_of(m_thick.begin(), m_thick.end(), [&](Index b) {
-      const double reach = m_bases[b].extent + node.radius;
-      if (b == a || (m_bases[b].center - node.point).squaredNorm() > reach * reach)
-        return false;
-      const Axis& axis = m_set.axes[b].axis;
-      const Axis_place place = nearest_place(axis, node.point);
-      return place.distance < m_rules.touch * node.radius &&
-             radius_at(axis, place) >= m_rules.touched * node.radius;
     });
   }
   /// Returns the nodes of held axes at which a tube may end, about one per radius.

@@ -9,11 +9,9 @@
 #include <pcs/skeleton/continuation/Held_axes.h>
 #include <pcs/skeleton/continuation/Thick_continuation.h>
 #include <pcs/skeleton/continuation/follow_thick_bases.h>
-#include <pcs/skeleton/continuation/follow_thick_tips.h>
 #include <pcs/skeleton/model/Axis_set.h>
 
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
 namespace pcs {
@@ -22,7 +20,7 @@ namespace skeleton {
 /// Result of `follow_thick_ends()`.
 struct Followed_ends
 {
-  std::size_t number_of_ends = 0; ///< continued bases and tips [count]
+  std::size_t number_of_ends = 0; ///< continued bases [count]
   //! unexplained points around thick bases far from held axes of similar thickness [count]
   std::size_t number_of_unexplained_points = 0;
 };
@@ -35,9 +33,7 @@ struct Followed_ends
   Each thick axis that is not held (`Held_axes`) is continued towards the root, by a tube to a held
   axis or by pieces (`Thick_continuation`) until a tube leads to one; if this fails, it does not
   change, and unexplained points around its base are counted if no held axis of similar thickness is
-  near. Held axes are continued by pieces where they end or become thin although points surround a
-  hollow interior ahead. They end at the next axis of similar thickness. Last, short gaps are left to
-  `join_axes()`, and the bases beyond them are continued.
+  near. Last, short gaps are left to `join_axes()`, and the bases beyond them are continued.
 
   A continued axis takes over the points on its surface from thinner and from much smaller axes, but
   not from held thick ones. Axes that lose most of their points are dropped. `root`: points of the
@@ -50,11 +46,8 @@ inline Followed_ends follow_thick_ends(const Scan& scan,
                                        Axis_set& set)
 {
   Held_axes axes(scan, chains, rules, root, set);
-  std::vector<std::uint8_t> was_tried;
   Followed_ends result;
-  result.number_of_ends = follow_thick_tips(was_tried, axes);
-  result.number_of_ends += follow_thick_bases(axes);
-  result.number_of_ends += follow_thick_tips(was_tried, axes);
+  result.number_of_ends = follow_thick_bases(axes);
   axes.leave_gaps();
   result.number_of_ends += follow_thick_bases(axes);
   result.number_of_unexplained_points = axes.count_unexplained();
