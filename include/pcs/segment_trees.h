@@ -230,7 +230,7 @@ void write_trees(const skeleton::Stand& stand,
                                                                          : std::size_t(tree)));
   }
   for (std::size_t t = 0; t < report.trees.size(); ++t) {
-    const double n = double(report.trees[t].number_of_points);
+    const double n = double(std::max<std::size_t>(report.trees[t].number_of_points, 1));
     const Eigen::Matrix3d covariance = squares[t] / n - (sums[t] / n) * (sums[t] / n).transpose();
     const Eigen::Vector3d values = linear_algebra::symmetric_eigen<3>(covariance).values;
     for (Eigen::Index k = 0; k < 3; ++k)
