@@ -74,6 +74,7 @@ set(skeleton_session
   branching/build_branch_tree.h
   clutter/remove_clutter.h
   continuation/continue_hidden_trunk.h
+  continuation/find_coarse_axes.h
   continuation/follow_thick_ends.h
   input/Session_hints.h
   layers/trace_layers.h
@@ -106,7 +107,14 @@ set(skeleton_clutter
   scan/leave_out_strays.h)
 set(skeleton_layers graph/Neighbor_graph.h graph/shortest_paths.h)
 set(skeleton_axes graph/Neighbor_graph.h layers/cut_layers.h)
-set(skeleton_continuation axes/Axis_fit.h axes/Chain_options.h axes/remove_axes.h)
+set(skeleton_continuation
+  axes/Axis_fit.h
+  axes/Chain_options.h
+  axes/fit_axes.h
+  axes/remove_axes.h
+  graph/Neighbor_links.h
+  layers/trace_layers.h
+  scan/prepare_scan.h)
 set(skeleton_radii axes/Axis_fit.h axes/Axis_oval.h)
 set(skeleton_leaves graph/Neighbor_graph.h graph/shortest_paths.h scan/Voxel_cells.h)
 set(skeleton_slices layers/cut_layers.h)

@@ -9,6 +9,7 @@
 #include <pcs/skeleton/branching/build_branch_tree.h>
 #include <pcs/skeleton/clutter/remove_clutter.h>
 #include <pcs/skeleton/continuation/continue_hidden_trunk.h>
+#include <pcs/skeleton/continuation/find_coarse_axes.h>
 #include <pcs/skeleton/continuation/follow_thick_ends.h>
 #include <pcs/skeleton/input/Session_hints.h>
 #include <pcs/skeleton/layers/trace_layers.h>
@@ -39,6 +40,7 @@ struct Session_options : Session_hints
   Clutter_options clutter;
   Layer_options layers;
   Axis_options axes;
+  Coarse_axis_options coarse_axes;
   Thick_end_options thick_ends;
   Hidden_trunk_options hidden_trunk;
   Leaf_options leaves;

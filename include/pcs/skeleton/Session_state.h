@@ -17,7 +17,7 @@ namespace pcs {
 namespace skeleton {
 
 /// The last completed stage.
-enum class Stage { input, neighbors, paths, axes, joints };
+enum class Stage { input, neighbors, paths, fits, axes, joints };
 
 /// Input and results of all stages. They persist after a cancelled call.
 template <class ConcurrencyTag>

@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -69,7 +70,14 @@ public:
 
   Followed_ends follow()
   {
-    return follow_thick_ends(scan, Chain_options(), Thick_end_options(), root, set);
+    return follow_thick_ends(scan,
+                             std::vector<std::uint8_t>(scan.size(), 1),
+                             Chain_options(),
+                             Thick_end_options(),
+                             root,
+                             {},
+                             Coarse_axis_options(),
+                             set);
   }
   /// Makes one axis of both limbs, which narrows to both tips.
   void join_branches()

@@ -52,7 +52,7 @@ public:
       m_rules(rules),
       m_root(root),
       m_set(set),
-      m_thinnest(std::max(rules.thinnest * scan.spacing, rules.noise * set.noise)),
+      m_thinnest(rules.least_radius(scan.spacing, set.noise)),
       m_lost(set.axes.size(), 0),
       m_points(set.axes.size()),
       m_is_held(set.axes.size(), 0),
@@ -118,6 +118,11 @@ public:
              (gap < m_rules.touch * end.radius ||
               (m_may_leave_gaps && gap < m_rules.least * end.radius && is_ahead(d, along)));
     });
+  }
+  /// Returns whether an axis explains the point `i` that is not much thinner than `radius` [L].
+  bool is_similar(Index i, double radius) const
+  {
+    return m_set.is_covered(i) && radius_of(i) >= m_rules.touched * radius;
   }
   /// Returns the nodes of held axes at which a tube may end, about one per radius.
   std::vector<Thick_target> targets_ahead(const Axis_node& end, const Vec3& along) const

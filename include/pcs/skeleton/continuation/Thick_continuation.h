@@ -55,6 +55,12 @@ struct Thick_end_options
   double widest_turn = 1.1; ///< largest angle between a base and the tube to its target [rad]
   double widest_gap = 6;    ///< longest stretch of a continuation without points
   double loose = 8;         ///< distance within which a loose base has no wood of similar thickness
+
+  /// Returns the least radius of a thick base for a spacing and a noise [L].
+  double least_radius(double spacing, double deviation) const
+  {
+    return std::max(thinnest * spacing, noise * deviation);
+  }
 };
 
 /// Place at which a continuation may end.
@@ -404,7 +410,7 @@ private:
     const double covered = on.empty() ? 0 : double(covered_sectors(on, Vec2(0, 0)));
     const bool is_good = on.size() >= m_rules.fewest &&
                          inside <= m_rules.filled * (count + inside) &&
-                         covered >= m_rules.sectors * 12 * (1 - std::pow(11.0 / 12, count));
+                         covered >= m_rules.sectors * sectors_of_random_points(on.size());
     return is_good ? at : 0;
   }
 

@@ -8,10 +8,13 @@
 #include <pcs/skeleton/axes/Chain_options.h>
 #include <pcs/skeleton/continuation/Held_axes.h>
 #include <pcs/skeleton/continuation/Thick_continuation.h>
+#include <pcs/skeleton/continuation/add_coarse_pieces.h>
+#include <pcs/skeleton/continuation/find_coarse_axes.h>
 #include <pcs/skeleton/continuation/follow_thick_bases.h>
 #include <pcs/skeleton/model/Axis_set.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace pcs {
@@ -20,7 +23,8 @@ namespace skeleton {
 /// Result of `follow_thick_ends()`.
 struct Followed_ends
 {
-  std::size_t number_of_ends = 0; ///< continued bases [count]
+  std::size_t number_of_pieces = 0; ///< added pieces of coarse axes [count]
+  std::size_t number_of_ends = 0;   ///< continued bases [count]
   //! unexplained points around thick bases far from held axes of similar thickness [count]
   std::size_t number_of_unexplained_points = 0;
 };
@@ -30,23 +34,31 @@ struct Followed_ends
   of such wood fall apart into strands and single points, so that chains explain only the ends of a
   limb.
 
-  Each thick axis that is not held (`Held_axes`) is continued towards the root, by a tube to a held
-  axis or by pieces (`Thick_continuation`) until a tube leads to one; if this fails, it does not
-  change, and unexplained points around its base are counted if no held axis of similar thickness is
-  near. Last, short gaps are left to `join_axes()`, and the bases beyond them are continued.
+  First, pieces of coarse axes are added where thick wood is missing (`add_coarse_pieces()`), those
+  of the coarsest axes first. Then each thick axis that is not held (`Held_axes`) is continued
+  towards the root, by a tube to a held axis or by pieces (`Thick_continuation`) until a tube leads
+  to one; if this fails, it does not change, and unexplained points around its base are counted if
+  no held axis of similar thickness is near. Last, short gaps are left to `join_axes()`, and the
+  bases beyond them are continued.
 
   A continued axis takes over the points on its surface from thinner and from much smaller axes, but
-  not from held thick ones. Axes that lose most of their points are dropped. `root`: points of the
-  root. O(n + t^2 + points near the ends) for t thick axes.
+  not from held thick ones. Axes that lose most of their points are dropped. `is_used`:
+  points of the tree; `root`: points of the root. O(n log n + t^2) for t thick axes.
 */
 inline Followed_ends follow_thick_ends(const Scan& scan,
+                                       const std::vector<std::uint8_t>& is_used,
                                        const Chain_options& chains,
                                        const Thick_end_options& rules,
                                        const std::vector<Index>& root,
+                                       const std::vector<Coarse_axis>& coarse,
+                                       const Coarse_axis_options& coarse_rules,
                                        Axis_set& set)
 {
   Held_axes axes(scan, chains, rules, root, set);
   Followed_ends result;
+  for (const Coarse_axis& axis : coarse)
+    result.number_of_pieces +=
+        add_coarse_pieces(scan, is_used, axis, set.noise, chains, coarse_rules, axes);
   result.number_of_ends = follow_thick_bases(axes);
   axes.leave_gaps();
   result.number_of_ends += follow_thick_bases(axes);

@@ -106,6 +106,12 @@ inline int covered_sectors(const std::vector<Vec2>& points, const Vec2& center)
   return count;
 }
 
+/// Returns the expected number of sectors that contain one of `count` random points.
+inline double sectors_of_random_points(std::size_t count)
+{
+  return number_of_sectors * (1 - std::pow(1 - 1.0 / number_of_sectors, double(count)));
+}
+
 } // namespace skeleton
 } // namespace pcs
 

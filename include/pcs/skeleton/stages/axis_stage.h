@@ -110,7 +110,7 @@ bool fit_wood(Session_state<Tag>& s, pcs::internal::Progress& progress)
   const int rounds = may_remove ? s.options.leaves.rounds : 0;
   do {
     const int k = s.leaves.rounds;
-    const double width = end_of_axes - end_of_first_fit;
+    const double width = end_of_fits - end_of_first_fit;
     const double from = k == 0 ? end_of_paths : end_of_first_fit + width * (k - 1) / rounds;
     const double part = k == 0 ? end_of_first_fit - end_of_paths : width / rounds;
     bool is_running = true;
@@ -137,18 +137,48 @@ void restore_wood(Session_state<Tag>& s)
     s.labels.undo_leaf_removal();
 }
 
+/// Returns the thick axes of thinned scans.
+template <class Tag>
+std::vector<Coarse_axis> find_coarse_axes(const Session_state<Tag>& s,
+                                          pcs::internal::Progress& progress)
+{
+  const Session_options& o = s.options;
+  return skeleton::find_coarse_axes<Tag>(
+      s.scan,
+      s.is_used(),
+      s.root,
+      s.axes,
+      o.thick_ends.least_radius(s.scan.spacing, s.axes.noise),
+      o.axes,
+      o.layers,
+      o.coarse_axes,
+      [&](double f) { return progress(end_of_fits + (end_of_axes - end_of_fits) * f); });
+}
+
 /// Fits the axes of all branches, removes leaves, fuses pieces of the same axis, and continues
 /// thick axes through wood with few points.
 template <class Tag>
 bool fit_all_axes(Session_state<Tag>& s, pcs::internal::Progress& progress)
 {
-  if (!fit_wood(s, progress))
+  if (s.stage < Stage::fits) {
+    if (!fit_wood(s, progress))
+      return false;
+    restore_wood(s);
+    fuse_axes<Tag>(s.scan.spacing, s.options.branching.fusion, s.axes);
+    s.stage = Stage::fits;
+  }
+  const std::vector<Coarse_axis> coarse = find_coarse_axes(s, progress);
+  if (progress.is_cancelled())
     return false;
-  restore_wood(s);
-  fuse_axes<Tag>(s.scan.spacing, s.options.branching.fusion, s.axes);
-  s.report.number_of_unexplained_thick_points =
-      follow_thick_ends(s.scan, s.options.axes.chains, s.options.thick_ends, s.root, s.axes)
-          .number_of_unexplained_points;
+  s.report.number_of_unexplained_thick_points = follow_thick_ends(s.scan,
+                                                                  s.is_used(),
+                                                                  s.options.axes.chains,
+                                                                  s.options.thick_ends,
+                                                                  s.root,
+                                                                  coarse,
+                                                                  s.options.coarse_axes,
+                                                                  s.axes)
+                                                    .number_of_unexplained_points;
   const double unit = s.scan.frame.unit;
   s.report.noise = unit * s.axes.noise;
   s.report.density = s.axes.density / (unit * unit);

@@ -47,6 +47,7 @@ inline Session_options draft_options(Session_options options, const Scan_frame& 
   options.normals.clear();
   options.method = Skeleton_method::chains;
   options.axes.passes = 1; // sufficient for thick wood, even in leaves
+  options.coarse_axes.factors.clear();
   options.leaf_removal = Leaf_removal::never;
   options.given.reset();
   options.up = Vec3::UnitZ();
