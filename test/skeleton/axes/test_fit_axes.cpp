@@ -286,6 +286,49 @@ BOOST_AUTO_TEST_CASE(a_chain_is_left_where_most_points_of_its_layers_have_no_axi
   BOOST_TEST(stretches(3).size() == 2u);
 }
 
+// A scan has the surface of wood only, so a tube around a second one is no branch.
+BOOST_AUTO_TEST_CASE(an_axis_that_encloses_other_wood_is_refused)
+{
+  for (const bool has_inner : {false, true}) {
+    std::vector<Vec3> points;
+    for (const double r : {radius, 0.5 * radius})
+      if (r == radius || has_inner)
+        for (double z = 0; z < 1; z += spacing)
+          for (double a = 0; a < 2 * pi; a += spacing / r)
+            points.emplace_back(r * std::cos(a), r * std::sin(a), z);
+    Scan scan;
+    prepare_scan<CGAL::Sequential_tag>(points, Vec3::UnitZ(), scan);
+    Axis_set set;
+    set.axis_of_point.assign(scan.size(), none);
+    set.segment_of_point.assign(scan.size(), none);
+    set.noise = 0.1 * scan.spacing;
+    Candidate candidate;
+    for (const double z : {0.0, 0.5, 1.0}) {
+      Axis_node node;
+      node.point = scan.frame.to_local(Vec3(0, 0, z));
+      node.radius = radius / scan.frame.unit;
+      candidate.axis.push_back(node);
+    }
+    for (Index i = 0; i < scan.size(); ++i) {
+      candidate.points.push_back(i);
+      candidate.segments.push_back(nearest_place(candidate.axis, scan.points[i]).segment);
+    }
+    candidate.number_of_own_points = scan.size();
+    const double share = internal::enclosed_share(scan, Chain_options(), set.noise, candidate.axis);
+    BOOST_TEST(std::abs(share - (has_inner ? 1.0 / 3 : 0)) < 0.02);
+    const auto is_accepted = [&](bool is_first) {
+      Axis_set trial = set;
+      if (!is_first)
+        trial.axes.emplace_back();
+      Candidate copy = candidate;
+      Noise_and_density_model statistics(set.noise);
+      return internal::accept(scan, Chain_options(), copy, none, trial, statistics);
+    };
+    BOOST_TEST(is_accepted(true));
+    BOOST_TEST(is_accepted(false) == !has_inner);
+  }
+}
+
 BOOST_AUTO_TEST_SUITE_END()
 
 } // namespace test_fit_axes

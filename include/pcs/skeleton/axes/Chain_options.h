@@ -34,6 +34,10 @@ namespace skeleton {
   - at a distance of at least `(1 + protrusion_radius) R + protrusion u` from the nearest other
     axis, which has the radius `R` [L], or
   - without points of other axes within `protrusion u`.
+
+  An axis other than the first is rejected if more than the fraction `enclosed` of all points on or
+  inside it lies inside its thick sections, `r >= max(thick u, hollow s)`: a scan has the surface of
+  wood only, so the axis encloses other branches or leaves. Short sections around forks are kept.
 */
 struct Chain_options
 {
@@ -86,8 +90,10 @@ struct Chain_options
   double typical = 0.5;      ///< least density of such sections, relative to the median [-]
   double filled_depth = 0.1; ///< points lie inside if they are deeper than this many radii ...
   double filled_noise = 4;   ///< ... and than this multiple of the noise
-  double deep = 0.3;         ///< upper bound on the depth of flutes of a stem, in radii
-  double steady = 4;         ///< length of the stretches that define the thickness, in radii
+  double hollow = 12;        ///< radius, in noise, at which a hollow interior is recognized [-]
+  double enclosed = 0.25; ///< largest fraction of points inside thick sections, also of others [-]
+  double deep = 0.3;      ///< upper bound on the depth of flutes of a stem, in radii
+  double steady = 4;      ///< length of the stretches that define the thickness, in radii
   double thin_base = 0.4,
          thick_base =
              0.75; ///< axes thinner than the first fraction at the base begin at the second [-]
