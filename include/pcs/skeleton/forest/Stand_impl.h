@@ -134,6 +134,7 @@ bool find_stand(const Read_input& read_input,
   if (thinned.points.size() < rules.solid_part) // much smaller than a tree
     return progress(1);
   Session_options options(hints);
+  options.axes.chains.enclosed = 1; // few points from the air are on the surface of a stem
   options.leaf_removal = Leaf_removal::never;
   options.do_trace_paths = false;
   options.do_thin = false;
