@@ -31,7 +31,7 @@ using Point = Kernel::Point_3;
 std::vector<Point> two_trees()
 {
   std::vector<Point> points;
-  for (const std::uint64_t seed : {1, 2}) {
+  for (const std::uint64_t seed : {1u, 2u}) {
     pcs::Tree_skeleton<Kernel> tree;
     pcs::grow_tree(tree, pcs::broadleaf_habit(), pcs::parameters::random_seed(seed));
     pcs::Virtual_scanner scanner;

@@ -237,7 +237,7 @@ double share_of_one_way_links(const Links& links)
 void run_case(pcs_bench::Table& table, const Deformation_case& c, const std::string& sampling)
 {
   const Edges edges = pcs_bench::neighbor_edges(c.points);
-  for (const std::size_t k : {2, 3, 4, 5, 6, 8, 10, 15, 20}) {
+  for (const std::size_t k : {2u, 3u, 4u, 5u, 6u, 8u, 10u, 15u, 20u}) {
     const Links nearest = nearest_neighbors(c.points, k);
     for (const Symmetry symmetry : {Symmetry::none, Symmetry::by_removal, Symmetry::by_addition}) {
       const Links links = symmetrize(nearest, symmetry);

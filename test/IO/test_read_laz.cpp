@@ -56,7 +56,7 @@ Las_file las_file(unsigned format)
 BOOST_AUTO_TEST_CASE(all_point_formats_have_the_values_of_the_las_file)
 {
   for (unsigned format = 0; format <= 10; ++format)
-    for (const std::size_t number_of_extra_bytes : {0, 3}) {
+    for (const std::size_t number_of_extra_bytes : {0u, 3u}) {
       Las_file las = las_file(format);
       las.number_of_extra_bytes = number_of_extra_bytes;
       if (number_of_extra_bytes > 0)

@@ -222,7 +222,7 @@ BOOST_AUTO_TEST_CASE(one_of_several_trees_is_read)
   BOOST_TEST(pcs::parent_node<Kernel>(2, tree) == 0u);
   BOOST_TEST((read(2, tree) == Ids{10, 11}));
   BOOST_TEST((read(3, tree) == Ids{31, 30}));
-  for (const std::size_t number : {0, 4}) {
+  for (const std::size_t number : {0u, 4u}) {
     std::string message;
     try {
       pcs::IO::read_swc<Kernel>(name, tree, number);

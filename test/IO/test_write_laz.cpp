@@ -69,7 +69,7 @@ BOOST_FIXTURE_TEST_SUITE(write_laz, Temporary_files)
 BOOST_AUTO_TEST_CASE(las_survives_a_detour_through_laz_byte_by_byte)
 {
   for (unsigned format = 0; format <= 10; ++format)
-    for (const std::size_t number_of_extra_bytes : {0, 7}) {
+    for (const std::size_t number_of_extra_bytes : {0u, 7u}) {
       Las_file las;
       las.format = format;
       las.minor = format < 4 ? 2 : format < 6 ? 3 : 4;

@@ -52,9 +52,9 @@ inline void warn_of_unknown_normals(const pcs::IO::Point_schema& schema,
   std::string found;
   for (const pcs::IO::Property_description& property : schema.properties) {
     std::string letters;
-    for (const unsigned char c : property.name)
-      if (std::isalpha(c) != 0)
-        letters += static_cast<char>(std::tolower(c));
+    for (const char c : property.name)
+      if (std::isalpha(static_cast<unsigned char>(c)) != 0)
+        letters += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     const bool is_name = property.name == "nx" || property.name == "ny" || property.name == "nz";
     for (const char* prefix : {"n", "normal", "normals"})
       for (const char axis : {'x', 'y', 'z'})

@@ -98,7 +98,7 @@ BOOST_AUTO_TEST_CASE(random_attachments_rarely_have_whorls)
 {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> place(0, 1);
-  for (const std::size_t n : {8, 12, 40}) {
+  for (const std::size_t n : {8u, 12u, 40u}) {
     int number = 0;
     for (int k = 0; k < 1000; ++k) {
       std::vector<double> s(n);

@@ -205,12 +205,13 @@ BOOST_AUTO_TEST_CASE(compact_links_are_those_of_the_list)
   list.insert(list.end(), others.begin(), others.end());
   compact.append(others);
   const std::size_t n = list.size(), middle = n / 2;
-  for (const auto& [begin, end] : {std::make_pair(std::size_t(0), n),
-                                   std::make_pair(std::size_t(1), middle),
-                                   std::make_pair(middle, middle + 1),
-                                   std::make_pair(middle, n - 1),
-                                   std::make_pair(n - 2, n),
-                                   std::make_pair(n, n)}) {
+  for (const auto& range : {std::make_pair(std::size_t(0), n),
+                            std::make_pair(std::size_t(1), middle),
+                            std::make_pair(middle, middle + 1),
+                            std::make_pair(middle, n - 1),
+                            std::make_pair(n - 2, n),
+                            std::make_pair(n, n)}) {
+    const std::size_t begin = range.first, end = range.second;
     std::size_t k = begin, wrong = 0;
     compact.for_each(begin, end, [&](const Link& l) {
       wrong += k >= end || l.first != list[k].first || l.second != list[k].second;

@@ -82,7 +82,7 @@ BOOST_AUTO_TEST_SUITE(leaf_blades)
 
 BOOST_AUTO_TEST_CASE(a_plant_with_blades_is_extracted_by_level_sets)
 {
-  for (const std::size_t blades : {3, 7}) {
+  for (const std::size_t blades : {3u, 7u}) {
     Tree tree, expected;
     const auto report = pcs::extract_tree_skeleton(plant(blades), tree);
     BOOST_TEST((report.method == pcs::Skeleton_method::level_sets));

@@ -150,7 +150,7 @@ BOOST_AUTO_TEST_CASE(the_base_of_a_branch_is_as_thick_as_what_leaves_the_parent)
   BOOST_TEST((m.place(m.tree.nodes[nodes[0]].point) - Vec3(0, 0, 1)).norm() < 1e-6);
   const Branch_node& first = m.tree.nodes[nodes[3]]; // outside
   BOOST_TEST(first.is_measured);
-  for (int k = 0; k < 3; ++k) { // their nearest points belong to the stem
+  for (std::size_t k = 0; k < 3; ++k) { // their nearest points belong to the stem
     BOOST_TEST(m.tree.nodes[nodes[k]].radius == first.radius);
     BOOST_TEST(!m.tree.nodes[nodes[k]].is_measured);
   }

@@ -103,7 +103,7 @@ BOOST_AUTO_TEST_CASE(quick_angles_are_those_of_the_c_library)
 
 BOOST_AUTO_TEST_CASE(stations_are_found_where_they_stood)
 {
-  for (const std::size_t number : {2, 4}) {
+  for (const std::size_t number : {2u, 4u}) {
     const auto scan = scan_from(number, 0.1 * degree);
     const Found found(positions(scan));
     BOOST_REQUIRE_EQUAL(found.grids.size(), number);

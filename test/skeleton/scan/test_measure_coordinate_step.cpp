@@ -43,7 +43,7 @@ BOOST_AUTO_TEST_SUITE(coordinate_step)
 
 BOOST_AUTO_TEST_CASE(exact_coordinates_have_no_step)
 {
-  for (const std::size_t n : {10, 1000, 100000})
+  for (const std::size_t n : {10u, 1000u, 100000u})
     BOOST_TEST(measure_coordinate_step(cylinder(n, Vec3(3, 4, 5))).step == 0, n << " points");
 }
 

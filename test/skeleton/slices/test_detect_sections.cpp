@@ -272,8 +272,8 @@ BOOST_AUTO_TEST_CASE(the_cost_of_turns_follows_a_bend)
   make_scan(points, scan);
   scan.spacing = 0.1;
   std::vector<Found_section> sections(3);
-  for (int k = 0; k < 3; ++k) {
-    const double angle = 0.25 * k * 3.14159265358979;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double angle = 0.25 * double(k) * 3.14159265358979;
     sections[k].center = Vec3(1 - std::cos(angle), 0, std::sin(angle));
     sections[k].along = Vec3(std::sin(angle), 0, std::cos(angle));
     sections[k].major = sections[k].minor = 0.05;
@@ -304,8 +304,8 @@ BOOST_AUTO_TEST_CASE(dense_points_are_near_the_surface)
   Scan scan;
   make_scan(points, scan);
   std::vector<Found_section> sections(6);
-  for (int k = 0; k < 6; ++k) {
-    sections[k].center = Vec3(0, 0, 0.2 * k);
+  for (std::size_t k = 0; k < 6; ++k) {
+    sections[k].center = Vec3(0, 0, 0.2 * double(k));
     sections[k].major = sections[k].minor = 0.1;
   }
   const auto number_of_dense = [&](double radius, double offset) {

@@ -28,7 +28,7 @@ namespace IO {
 namespace internal {
 
 /// Columns of a table of cylinders. The three columns of a vector are consecutive.
-enum Cylinder_column {
+enum Cylinder_column : std::size_t {
   column_start,
   column_axis = column_start + 3,
   column_end = column_axis + 3,
