@@ -185,10 +185,9 @@ BOOST_AUTO_TEST_CASE(pairs_of_two_trees_with_errors_are_refused)
     d.trees[0].normal.assign(d.trees[0].point.size() + 1, {0, 0, 1});
   });
   const char* const pair = "a pair of points names what does not exist, or is out of order";
-  constexpr auto no_point = pcs::Orl_correspondences::no_point;
   refused(pair, [](auto& d) { d.pairs.back().edge = 1u << 30; });
   refused(pair, [](auto& d) { std::swap(d.pairs.front().edge, d.pairs.back().edge); });
-  refused(pair, [](auto& d) { d.pairs[2].point = {no_point, no_point}; });
+  refused(pair, [](auto& d) { d.pairs[2].point.fill(pcs::Orl_correspondences::no_point); });
   refused(pair, [](auto& d) { d.pairs[2].point[0] = 1u << 30; });
   refused(pair, [](auto& d) { d.pairs[2].point[1] = 1u << 30; });
 }
