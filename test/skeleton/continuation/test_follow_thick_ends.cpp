@@ -77,6 +77,7 @@ public:
                              root,
                              {},
                              Coarse_axis_options(),
+                             {},
                              set);
   }
   /// Makes one axis of both limbs, which narrows to both tips.

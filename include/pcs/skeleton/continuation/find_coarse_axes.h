@@ -84,13 +84,19 @@ inline std::vector<std::uint8_t> points_of_sparse_wood(const Scan& scan,
 }
 
 /// Returns a subset of the points of `is_used` that are at least `distance` [L] apart, and within
-/// `distance` of all others. O(points log n).
-inline std::vector<Vec3>
-thinned_points(const Scan& scan, std::vector<std::uint8_t> is_used, double distance)
+/// `distance` of all others. Empty if `is_running()` returns `false`. O(points log n).
+template <class Is_running>
+std::vector<Vec3> thinned_points(const Scan& scan,
+                                 std::vector<std::uint8_t> is_used,
+                                 double distance,
+                                 const Is_running& is_running)
 {
+  constexpr Index often = 1 << 16;
   std::vector<Vec3> kept;
   std::vector<Index> near;
   for (Index i = 0; i < scan.size(); ++i) {
+    if (i % often == 0 && !is_running())
+      return {};
     if (!is_used[i])
       continue;
     kept.push_back(scan.points[i]);
@@ -194,12 +200,15 @@ std::vector<Coarse_axis> find_coarse_axes(const Scan& scan,
     const auto part = [&](double f) {
       return is_running = is_running && progress(share * (double(k) + f));
     };
-    if (!part(0))
+    if (!is_running)
       break;
     double spacing = 0;
     const Axis_set coarse = internal::axes_of_points<ConcurrencyTag>(
         scan.frame,
-        internal::thinned_points(scan, is_sparse, rules.factors[k] * scan.spacing),
+        internal::thinned_points(scan,
+                                 is_sparse,
+                                 rules.factors[k] * scan.spacing,
+                                 [&] { return part(0); }),
         places,
         axes,
         layers,

@@ -111,15 +111,18 @@ private:
 
 } // namespace internal
 
-/// Continues the bases of all thick axes that are not held, in the order of `Held_axes::thick()`.
-/// Returns the number of continued bases.
-inline std::size_t follow_thick_bases(Held_axes& axes)
+/// Continues the bases of all thick axes that are not held, in the order of `Held_axes::thick()`,
+/// and adds their number to `count`. Returns `false` if `go_on` stopped the work.
+template <class Go_on>
+bool follow_thick_bases(Held_axes& axes, std::size_t& count, const Go_on& go_on)
 {
-  std::size_t count = 0;
-  for (std::size_t k = 0; k < axes.thick().size(); ++k) // some axes are added
+  for (std::size_t k = 0; k < axes.thick().size(); ++k) { // some axes are added
+    if (!go_on(double(k) / double(axes.thick().size())))
+      return false;
     if (const Index a = axes.thick()[k]; !axes.is_held(a))
       count += internal::Thick_base_follower(a, axes)();
-  return count;
+  }
+  return true;
 }
 
 } // namespace skeleton

@@ -5,6 +5,7 @@
 #ifndef PCS_SKELETON_CONTINUATION_FOLLOW_THICK_ENDS_H
 #define PCS_SKELETON_CONTINUATION_FOLLOW_THICK_ENDS_H
 
+#include <pcs/internal/progress.h>
 #include <pcs/skeleton/axes/Chain_options.h>
 #include <pcs/skeleton/continuation/Held_axes.h>
 #include <pcs/skeleton/continuation/Thick_continuation.h>
@@ -27,6 +28,7 @@ struct Followed_ends
   std::size_t number_of_ends = 0;   ///< continued bases [count]
   //! unexplained points around thick bases far from held axes of similar thickness [count]
   std::size_t number_of_unexplained_points = 0;
+  bool is_complete = false; ///< not stopped
 };
 
 /*!
@@ -42,8 +44,9 @@ struct Followed_ends
   bases beyond them are continued.
 
   A continued axis takes over the points on its surface from thinner and from much smaller axes, but
-  not from held thick ones. Axes that lose most of their points are dropped. `is_used`:
-  points of the tree; `root`: points of the root. O(n log n + t^2) for t thick axes.
+  not from held thick ones. Axes that lose most of their points are dropped. `is_used`: points of
+  the tree; `root`: points of the root. If `go_on` returns `false`, the work stops, and `set` is of
+  no use. O(n log n + t^2) for t thick axes.
 */
 inline Followed_ends follow_thick_ends(const Scan& scan,
                                        const std::vector<std::uint8_t>& is_used,
@@ -52,18 +55,30 @@ inline Followed_ends follow_thick_ends(const Scan& scan,
                                        const std::vector<Index>& root,
                                        const std::vector<Coarse_axis>& coarse,
                                        const Coarse_axis_options& coarse_rules,
+                                       const pcs::internal::Go_on& go_on,
                                        Axis_set& set)
 {
   Held_axes axes(scan, chains, rules, root, set);
   Followed_ends result;
-  for (const Coarse_axis& axis : coarse)
+  for (std::size_t k = 0; k < coarse.size(); ++k) {
+    if (!pcs::internal::goes_on(go_on, 0.5 * double(k) / double(coarse.size())))
+      return result;
     result.number_of_pieces +=
-        add_coarse_pieces(scan, is_used, axis, set.noise, chains, coarse_rules, axes);
-  result.number_of_ends = follow_thick_bases(axes);
+        add_coarse_pieces(scan, is_used, coarse[k], set.noise, chains, coarse_rules, axes);
+  }
+  const auto follow = [&](double from) {
+    return follow_thick_bases(axes, result.number_of_ends, [&](double f) {
+      return pcs::internal::goes_on(go_on, from + 0.25 * f);
+    });
+  };
+  if (!follow(0.5))
+    return result;
   axes.leave_gaps();
-  result.number_of_ends += follow_thick_bases(axes);
+  if (!follow(0.75))
+    return result;
   result.number_of_unexplained_points = axes.count_unexplained();
   axes.drop_lost();
+  result.is_complete = true;
   return result;
 }
 

@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace pcs {
@@ -152,11 +153,40 @@ std::vector<Coarse_axis> find_coarse_axes(const Session_state<Tag>& s,
       o.axes,
       o.layers,
       o.coarse_axes,
-      [&](double f) { return progress(end_of_fits + (end_of_axes - end_of_fits) * f); });
+      [&](double f) { return progress(end_of_fits + (end_of_coarse_fits - end_of_fits) * f); });
+}
+
+/// Finds thick wood with few points, and continues thick axes through it. The axes do not change if
+/// `progress` stops the work.
+template <class Tag>
+bool continue_thick_axes(Session_state<Tag>& s, pcs::internal::Progress& progress)
+{
+  const Session_options& o = s.options;
+  const std::vector<Coarse_axis> coarse = find_coarse_axes(s, progress);
+  if (progress.is_cancelled())
+    return false;
+  Axis_set axes = s.axes;
+  const Followed_ends ends = follow_thick_ends(
+      s.scan,
+      s.is_used(),
+      o.axes.chains,
+      o.thick_ends,
+      s.root,
+      coarse,
+      o.coarse_axes,
+      [&](double f) {
+        return progress(end_of_coarse_fits + (end_of_axes - end_of_coarse_fits) * f);
+      },
+      axes);
+  if (!ends.is_complete)
+    return false;
+  s.axes = std::move(axes);
+  s.report.number_of_unexplained_thick_points = ends.number_of_unexplained_points;
+  return true;
 }
 
 /// Fits the axes of all branches, removes leaves, fuses pieces of the same axis, and continues
-/// thick axes through wood with few points.
+/// thick axes.
 template <class Tag>
 bool fit_all_axes(Session_state<Tag>& s, pcs::internal::Progress& progress)
 {
@@ -167,18 +197,8 @@ bool fit_all_axes(Session_state<Tag>& s, pcs::internal::Progress& progress)
     fuse_axes<Tag>(s.scan.spacing, s.options.branching.fusion, s.axes);
     s.stage = Stage::fits;
   }
-  const std::vector<Coarse_axis> coarse = find_coarse_axes(s, progress);
-  if (progress.is_cancelled())
+  if (!continue_thick_axes(s, progress))
     return false;
-  s.report.number_of_unexplained_thick_points = follow_thick_ends(s.scan,
-                                                                  s.is_used(),
-                                                                  s.options.axes.chains,
-                                                                  s.options.thick_ends,
-                                                                  s.root,
-                                                                  coarse,
-                                                                  s.options.coarse_axes,
-                                                                  s.axes)
-                                                    .number_of_unexplained_points;
   const double unit = s.scan.frame.unit;
   s.report.noise = unit * s.axes.noise;
   s.report.density = s.axes.density / (unit * unit);

@@ -15,8 +15,8 @@ namespace internal {
 
 /// Fractions of the work after which the stages end.
 constexpr double end_of_neighbors = 0.35, end_of_clutter = 0.42, end_of_paths = 0.6,
-                 end_of_first_fit = 0.75, end_of_fits = 0.85, end_of_axes = 0.9,
-                 end_of_joints = 0.95, end_of_radii = 0.97;
+                 end_of_first_fit = 0.75, end_of_fits = 0.82, end_of_coarse_fits = 0.87,
+                 end_of_axes = 0.9, end_of_joints = 0.95, end_of_radii = 0.97;
 
 template <class Tag>
 bool finish(Session_state<Tag>& s, Stage stage, double end, pcs::internal::Progress& progress)
