@@ -7,6 +7,7 @@
 #include <pcs/skeleton/continuation/follow_thick_ends.h>
 #include <pcs/skeleton/result/skeleton_warnings.h>
 #include <pcs/skeleton/scan/prepare_scan.h>
+#include <support/axes.h>
 
 #include <CGAL/tags.h>
 
@@ -128,15 +129,10 @@ private:
   }
   void add_axis(const Vec3& a, const Vec3& b, double r)
   {
-    Fitted_axis axis;
-    constexpr int steps = 40;
-    for (int k = 0; k <= steps; ++k) {
-      Axis_node node;
-      node.point = scan.frame.to_local(a + double(k) / steps * (b - a));
-      node.radius = r / scan.frame.unit;
-      axis.axis.push_back(node);
-    }
-    set.axes.push_back(axis);
+    const double radius = r / scan.frame.unit;
+    set.axes.emplace_back();
+    set.axes.back().axis =
+        pcs_test::straight_axis(scan.frame.to_local(a), scan.frame.to_local(b), 40, radius, radius);
   }
 
   Vec3 m_seat = Vec3(0, 0, 1), m_along = Vec3(0.8, 0, 0.6);
