@@ -8,6 +8,7 @@
 #include <pcs/skeleton/model/Axis.h>
 #include <pcs/skeleton/model/Axis_set.h>
 #include <pcs/skeleton/model/Branch_tree.h>
+#include <pcs/skeleton/model/Scan.h>
 
 #include <cstddef>
 #include <vector>
@@ -57,6 +58,25 @@ inline pcs::skeleton::Index add_branch(pcs::skeleton::Branch_tree& tree,
   }
   tree.branches.push_back(branch);
   return b;
+}
+
+/// Assigns the input points of a scan to existing axes of a set, or to none.
+inline void assign_points(const pcs::skeleton::Scan& scan,
+                          const std::vector<pcs::skeleton::Index>& axis_of_input,
+                          pcs::skeleton::Axis_set& set)
+{
+  using namespace pcs::skeleton;
+  set.axis_of_point.assign(scan.size(), none);
+  set.segment_of_point.assign(scan.size(), none);
+  for (std::size_t k = 0; k < axis_of_input.size(); ++k) {
+    if (axis_of_input[k] == none)
+      continue;
+    const Index i = scan.point_of_input[k];
+    Fitted_axis& axis = set.axes[axis_of_input[k]];
+    ++axis.number_of_points;
+    set.axis_of_point[i] = axis_of_input[k];
+    set.segment_of_point[i] = nearest_place(axis.axis, scan.points[i]).segment;
+  }
 }
 
 /// One point per segment of each axis.

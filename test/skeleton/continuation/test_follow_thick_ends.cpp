@@ -50,23 +50,14 @@ public:
     prepare_scan<CGAL::Sequential_tag>(m_points, Vec3::UnitZ(), scan);
     std::fill(scan.is_outlier.begin(), scan.is_outlier.end(), std::uint8_t(0));
     set.noise = 0.001 / scan.frame.unit;
-    set.axis_of_point.assign(scan.size(), none);
-    set.segment_of_point.assign(scan.size(), none);
     add_axis(Vec3::Zero(), Vec3(0, 0, 2), trunk_radius);
     add_axis(fork, outer * m_along + m_seat, limb_radius);
     if (is_forked)
       add_axis(fork, tip, limb_radius);
-    for (std::size_t k = 0; k < m_points.size(); ++k) {
-      const Index i = scan.point_of_input[k];
-      set.axis_of_point[i] = m_axis[k];
-      if (m_axis[k] == none)
-        continue;
-      Fitted_axis& axis = set.axes[m_axis[k]];
-      ++axis.number_of_points;
-      set.segment_of_point[i] = nearest_place(axis.axis, scan.points[i]).segment;
+    pcs_test::assign_points(scan, m_axis, set);
+    for (std::size_t k = 0; k < m_points.size(); ++k)
       if (m_points[k].z() < 0.02)
-        root.push_back(i);
-    }
+        root.push_back(scan.point_of_input[k]);
   }
 
   Followed_ends follow()
