@@ -46,6 +46,8 @@ BOOST_AUTO_TEST_CASE(there_is_no_spread_unless_it_is_wanted)
   const pcs::Skeleton_report report = pcs::extract_tree_skeleton(clear_tree(), tree);
   BOOST_TEST(report.spread.number_of_copies == 0u);
   BOOST_TEST(report.spread.volume == 0);
+  BOOST_TEST(report.estimates.volume == report.total.volume);
+  BOOST_TEST(report.estimates.trunk_volume == report.by_order.front().volume);
 }
 
 BOOST_AUTO_TEST_CASE(copies_do_not_change_the_tree)
@@ -129,14 +131,13 @@ BOOST_AUTO_TEST_CASE(standard_errors_have_a_part_by_chance_and_a_shared_part)
 {
   pcs::Skeleton_report report;
   report.by_order.push_back({1, 3, 0.03});
-  report.by_size.resize(5);
-  report.by_size[4].volume = 2;
-  report.height = 10;
+  report.estimates.volume_by_size = {0, 0, 0, 0, 2};
+  report.estimates.height = 10;
   BOOST_TEST(pcs::standard_errors(report).height == 0); // no copies
   report.spread.number_of_copies = 4;
   report.spread.fraction = 0.9;
   report.spread.volume_by_size = {0, 0, 0, 0, 0.1};
-  const pcs::Skeleton_errors shared = pcs::standard_errors(report);
+  const pcs::Tree_values shared = pcs::standard_errors(report);
   BOOST_TEST(shared.height > 0.05);
   BOOST_TEST(shared.height < 0.2);
   report.spread.height = 1;
@@ -156,7 +157,7 @@ BOOST_AUTO_TEST_CASE(a_tree_has_standard_errors)
   Tree tree;
   const pcs::Skeleton_report report =
       pcs::extract_tree_skeleton(clear_tree(), tree, np::number_of_resamples(4));
-  const pcs::Skeleton_errors errors = pcs::standard_errors(report);
+  const pcs::Tree_values errors = pcs::standard_errors(report);
   BOOST_TEST(report.spread.fraction == 0.9);
   BOOST_TEST(errors.height >= 3 * report.spread.height);
   BOOST_TEST(errors.trunk_volume > 0);
@@ -184,6 +185,7 @@ BOOST_AUTO_TEST_CASE(values_that_may_differ_by_more_than_the_goals_are_named)
   report.by_order.push_back({1, 10, 0.1});
   report.total = report.by_order.front();
   report.height = 10;
+  report.estimates.volume = report.total.volume;
   report.spread.number_of_copies = 4;
   const auto names_volume = [&report](double deviation) {
     report.spread.volume = deviation * report.total.volume;
@@ -214,8 +216,8 @@ BOOST_AUTO_TEST_CASE(a_cancelled_estimate_continues)
 {
   const Cloud points = clear_tree();
   Tree tree;
-  const pcs::Skeleton_spread expected =
-      pcs::extract_tree_skeleton(points, tree, np::number_of_resamples(3)).spread;
+  const pcs::Skeleton_report expected =
+      pcs::extract_tree_skeleton(points, tree, np::number_of_resamples(3));
   double limit = 0.6, last = 0; // while copies are extracted
   const auto callback = [&](double f) {
     BOOST_TEST(f >= last);
@@ -229,7 +231,8 @@ BOOST_AUTO_TEST_CASE(a_cancelled_estimate_continues)
   last = 0;
   const pcs::Skeleton_report report = work.extract(tree);
   BOOST_TEST(report.spread.number_of_copies == 3u);
-  BOOST_TEST(report.spread.volume == expected.volume);
+  BOOST_TEST(report.spread.volume == expected.spread.volume);
+  BOOST_TEST(report.estimates.volume == expected.estimates.volume);
 }
 
 BOOST_AUTO_TEST_CASE(copies_keep_nine_tenths_of_small_scans_and_thin_large_ones)
@@ -364,12 +367,51 @@ Cloud random_points(unsigned seed)
   return points;
 }
 
-BOOST_AUTO_TEST_CASE(uncertain_medians_need_more_copies)
+BOOST_AUTO_TEST_CASE(uncertain_medians_need_more_copies_which_give_estimates)
 {
   const Cloud points = random_points(1);
   Tree tree;
-  const auto spread = pcs::extract_tree_skeleton(points, tree, np::number_of_resamples(2)).spread;
-  BOOST_TEST(spread.number_of_copies + spread.number_of_empty_copies == 8u);
+  const auto report = pcs::extract_tree_skeleton(points, tree, np::number_of_resamples(2));
+  BOOST_TEST(report.spread.number_of_copies + report.spread.number_of_empty_copies == 8u);
+  // They and displaced points give the estimates.
+  BOOST_TEST(report.estimates.volume != report.total.volume);
+  BOOST_TEST(report.estimates.volume_by_size.size() == report.by_size.size());
+  // among values with the standard deviation of the spread
+  BOOST_TEST(std::abs(report.estimates.volume - report.total.volume) < 3 * report.spread.volume);
+}
+
+BOOST_AUTO_TEST_CASE(estimates_lie_between_two_groups_of_skeletons)
+{
+  pcs::Skeleton_report report;
+  report.by_order.resize(1);
+  report.by_size.resize(2);
+  pcs::skeleton::Copy_descriptors skeletons;
+  for (const double value : {1, 1, 1, 3, 3}) {
+    report.height = report.diameter_at_breast_height = value;
+    report.total.length = report.total.volume = value;
+    report.by_order[0].length = report.by_order[0].volume = value;
+    report.by_size[1].volume = value;
+    skeletons.add(report, pcs::skeleton::Vec3::Zero());
+  }
+  const pcs::Tree_values e = skeletons.estimates();
+  for (const double value : {e.height,
+                             e.diameter_at_breast_height,
+                             e.trunk_length,
+                             e.length,
+                             e.volume,
+                             e.trunk_volume,
+                             e.volume_by_size.at(1)})
+    BOOST_TEST(value == 2);
+  BOOST_TEST(e.volume_by_size.at(0) == 0);
+}
+
+BOOST_AUTO_TEST_CASE(estimates_of_large_scans_are_the_values_of_the_skeleton)
+{
+  Tree tree;
+  const Cloud points = cylinder(82000, 0.1, 3); // copies have less than half of the points
+  const auto report = pcs::extract_tree_skeleton(points, tree, np::number_of_resamples(1));
+  BOOST_TEST(report.spread.number_of_copies == 1u);
+  BOOST_TEST(report.estimates.volume == report.total.volume);
 }
 
 BOOST_AUTO_TEST_CASE(large_scans_have_fewer_additional_copies)

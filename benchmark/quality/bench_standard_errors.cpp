@@ -77,20 +77,8 @@ Values true_values(const Tree& tree, const std::vector<std::size_t>& hits)
   return v;
 }
 
-Values values_of(const pcs::Skeleton_report& r)
-{
-  Values v = {r.height,
-              r.diameter_at_breast_height,
-              r.by_order.front().length,
-              r.total.length,
-              r.total.volume,
-              r.by_order.front().volume};
-  for (std::size_t k = 0; k < std::min(number_of_classes, r.by_size.size()); ++k)
-    v[6 + k] = r.by_size[k].volume;
-  return v;
-}
-
-Values values_of(const pcs::Skeleton_errors& e)
+/// Estimates or standard errors.
+Values values_of(const pcs::Tree_values& e)
 {
   Values v =
       {e.height, e.diameter_at_breast_height, e.trunk_length, e.length, e.volume, e.trunk_volume};
@@ -125,7 +113,8 @@ void add(const pcs::Skeleton_report& report,
          const Values& reference,
          std::array<Coverage, number_of_values>& coverage)
 {
-  const Values found = values_of(report), errors = values_of(pcs::standard_errors(report));
+  const Values found = values_of(report.estimates),
+               errors = values_of(pcs::standard_errors(report));
   for (std::size_t k = 0; k < number_of_values; ++k) {
     if (!(reference[k] > 0) || !(found[k] > 0))
       continue;
@@ -172,7 +161,7 @@ void add_halves(const std::string& file, std::array<Coverage, number_of_values>&
         kept.push_back(points[i]);
     const pcs::Skeleton_report report = extract(kept);
     if (report.spread.number_of_copies >= 2)
-      add(report, values_of(whole), coverage);
+      add(report, values_of(whole.estimates), coverage);
   }
 }
 

@@ -29,10 +29,11 @@ namespace np = pcs::parameters;
 
 namespace {
 
-/// Descriptors of a skeleton.
+/// Estimates of a tree, and values of its skeleton.
 struct Measures
 {
-  double height = 0, diameter = 0, trunk = 0, length = 0, volume = 0, leaves = 0;
+  double height = 0, diameter = 0, trunk = 0, length = 0, volume = 0;
+  double skeleton_volume = 0, leaves = 0;
   Kernel::Point_3 root{0, 0, 0}; ///< in the frame of the original scan
   std::size_t number_of_warnings = 0;
   bool has_root = false;
@@ -105,11 +106,12 @@ Measures measure(const Copy& copy, std::size_t number_of_resamples)
   const pcs::Skeleton_report report =
       pcs::extract_tree_skeleton(copy.points, tree, np::number_of_resamples(number_of_resamples));
   Measures m;
-  m.height = report.height;
-  m.diameter = report.diameter_at_breast_height;
-  m.trunk = report.by_order.empty() ? 0 : report.by_order.front().length;
-  m.length = report.total.length;
-  m.volume = report.total.volume;
+  m.height = report.estimates.height;
+  m.diameter = report.estimates.diameter_at_breast_height;
+  m.trunk = report.estimates.trunk_length;
+  m.length = report.estimates.length;
+  m.volume = report.estimates.volume;
+  m.skeleton_volume = report.total.volume;
   m.leaves = double(report.number_of_leaf_points) / double(copy.points.size());
   m.number_of_warnings = pcs::warnings(report).size();
   m.has_root = num_vertices(tree) > 0;
@@ -156,6 +158,7 @@ int main(int argc, char** argv)
                           "trunk",
                           "length",
                           "volume",
+                          "of skeleton",
                           "leaves",
                           "root m",
                           "warnings"});
@@ -166,6 +169,7 @@ int main(int argc, char** argv)
                             "trunk m",
                             "length m",
                             "volume m3",
+                            "of skeleton",
                             "leaves %",
                             "root z",
                             "warnings"});
@@ -183,6 +187,7 @@ int main(int argc, char** argv)
                      pcs_bench::number(m.trunk),
                      pcs_bench::number(m.length),
                      pcs_bench::number(m.volume),
+                     pcs_bench::number(m.skeleton_volume),
                      pcs_bench::number(100 * m.leaves),
                      pcs_bench::number(m.root.z(), 4),
                      std::to_string(m.number_of_warnings)});
@@ -200,6 +205,7 @@ int main(int argc, char** argv)
                  percent(&Measures::trunk),
                  percent(&Measures::length),
                  percent(&Measures::volume),
+                 percent(&Measures::skeleton_volume),
                  percent(&Measures::leaves),
                  pcs_bench::number(moved, 2),
                  std::to_string(all[0].number_of_warnings)});

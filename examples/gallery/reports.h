@@ -59,6 +59,7 @@ inline Json read_scan_report(const std::string& path)
     member(order, "length").number();
   });
   member(report, "height").number();
+  member(report, "volume").number();
   check_diameter(report);
   return Json(json);
 }

@@ -44,9 +44,11 @@
 #include <cstdint>
 #include <exception>
 #include <functional>
+#include <iomanip>
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -258,9 +260,7 @@ void write_points_to(const std::string& path,
     check_output(path, table.schema());
 }
 
-void write_tables(const Skeleton_options& options,
-                  const Tree& tree,
-                  const pcs::Skeleton_errors& errors)
+void write_tables(const Skeleton_options& options, const Tree& tree, const pcs::Tree_values& errors)
 {
   const Kernel::Vector_3 up = up_direction<Kernel>(options.up);
   if (!options.cylinders.empty())
@@ -337,6 +337,22 @@ nlohmann::ordered_json run_one(const std::string& input, const Skeleton_options&
   }
 }
 
+/// Returns an estimate of the report with its standard error, if known.
+std::string estimate(const nlohmann::ordered_json& report, const char* key)
+{
+  if (report[key].is_null())
+    return "none";
+  const auto digits = [](const nlohmann::ordered_json& value, int count) {
+    std::ostringstream text;
+    text << std::setprecision(count) << value.get<double>();
+    return text.str();
+  };
+  const std::string value = digits(report[key], 4);
+  return report.count("standard_errors") > 0
+             ? value + " +- " + digits(report["standard_errors"][key], 2)
+             : value;
+}
+
 void run_single(const Skeleton_options& options)
 {
   std::unique_ptr<Report_file> file;
@@ -347,12 +363,9 @@ void run_single(const Skeleton_options& options)
     file->commit(json);
   if (!options.is_quiet)
     std::cout << "branches " << json["branches"] << ", nodes " << json["nodes"] << ", height "
-              << json["height"] << ", diameter at breast height "
-              << (json["diameter_at_breast_height"].is_null()
-                      ? "none"
-                      : json["diameter_at_breast_height"].dump())
-              << ", length " << json["total"]["length"] << ", volume " << json["total"]["volume"]
-              << '\n';
+              << estimate(json, "height") << ", diameter at breast height "
+              << estimate(json, "diameter_at_breast_height") << ", length "
+              << estimate(json, "length") << ", volume " << estimate(json, "volume") << '\n';
 }
 
 /// Processes several scans. Returns whether all have a skeleton.

@@ -178,7 +178,7 @@ BOOST_AUTO_TEST_CASE(the_diameter_at_breast_height_is_interpolated)
 BOOST_AUTO_TEST_CASE(standard_errors_have_the_units_of_their_values)
 {
   const Tree tree = make_fork();
-  pcs::Skeleton_errors errors;
+  pcs::Tree_values errors;
   errors.height = 0.1;
   errors.diameter_at_breast_height = 0.02;
   errors.trunk_length = 0.3;

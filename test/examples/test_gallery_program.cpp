@@ -176,6 +176,7 @@ BOOST_AUTO_TEST_CASE(a_tree_below_breast_height_and_line_ends_of_windows_are_acc
   write("c.csv", "\xEF\xBB\xBF" + table);
   write("r.json",
         R"({"total": {"branches": 1, "length": 1, "volume": 0.1}, "by_order": [], "height": 1,)"
+        R"( "volume": 0.1,)"
         R"( "diameter_at_breast_height": null, "name": "</script><!--<script>"})");
   BOOST_TEST_REQUIRE(run(arguments("--scan scan.ply --cylinders c.csv --scan-report r.json")) == 0,
                      err);

@@ -134,6 +134,17 @@ BOOST_AUTO_TEST_CASE(the_report_has_the_spread_of_resampled_copies)
   BOOST_TEST(with["spread"]["copies"] == 2);
   BOOST_TEST(with["spread"]["volume"].get<double>() > 0);
   BOOST_TEST(with["spread"]["volume"].get<double>() < 0.05 * with["total"]["volume"].get<double>());
+  // Without copies, the estimates are the values of the skeleton. Standard errors are printed.
+  BOOST_TEST(without["volume"] == without["total"]["volume"]);
+  BOOST_TEST(without["height"] == without["skeleton"]["height"]);
+  BOOST_TEST(without["trunk_volume"] == without["by_order"][0]["volume"]);
+  BOOST_TEST(with["volume"] != with["total"]["volume"]);
+  for (const char* value :
+       {"height", "diameter_at_breast_height", "trunk_length", "length", "volume", "trunk_volume"})
+    BOOST_TEST(std::abs(with[value].get<double>() - without[value].get<double>()) <
+               with["standard_errors"][value].get<double>());
+  BOOST_TEST(out.find("volume 0.0") != std::string::npos, out);
+  BOOST_TEST(out.find(" +- ") != std::string::npos, out);
 }
 
 BOOST_AUTO_TEST_CASE(all_results_agree)

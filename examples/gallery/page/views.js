@@ -168,7 +168,7 @@ const views = {
         controls.note(
             `Height ${metres(report.height)}, diameter at breast height ` +
             `${diameter(report.diameter_at_breast_height)}, wood ` +
-            `${(1000 * report.total.volume).toFixed(0)} litres.`);
+            `${(1000 * report.volume).toFixed(0)} litres.`);
       controls.note(
           shareOf(positions.length / 3, data.number_in_file, 'points') +
           ' are shown. Grey points belong to no branch.');

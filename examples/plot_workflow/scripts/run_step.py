@@ -267,7 +267,7 @@ def skeletons(arguments, runner):
         reports[name] = {
             "diameter_at_breast_height": entry["diameter_at_breast_height"],
             "height": entry["height"],
-            "volume": entry["total"]["volume"],
+            "volume": entry["volume"],
             "standard_errors": {
                 key: errors.get(key) for key in ("diameter_at_breast_height", "height", "volume")
             },

@@ -72,15 +72,21 @@ inline nlohmann::ordered_json to_json(const pcs::Skeleton_spread& s)
           {"root", s.root}};
 }
 
-inline nlohmann::ordered_json to_json(const pcs::Skeleton_errors& e)
+inline nlohmann::ordered_json to_json(const pcs::Tree_values& v)
 {
-  return {{"height", e.height},
-          {"diameter_at_breast_height", e.diameter_at_breast_height},
-          {"trunk_length", e.trunk_length},
-          {"length", e.length},
-          {"volume", e.volume},
-          {"trunk_volume", e.trunk_volume},
-          {"volume_by_size", e.volume_by_size}};
+  return {{"height", v.height},
+          {"diameter_at_breast_height", v.diameter_at_breast_height},
+          {"trunk_length", v.trunk_length},
+          {"length", v.length},
+          {"volume", v.volume},
+          {"trunk_volume", v.trunk_volume},
+          {"volume_by_size", v.volume_by_size}};
+}
+
+/// Returns a diameter at breast height, which is null if the tree is lower.
+inline nlohmann::ordered_json diameter_json(double diameter)
+{
+  return diameter > 0 ? nlohmann::ordered_json(diameter) : nlohmann::ordered_json(nullptr);
 }
 
 /// Returns the value of the option `--method`.
@@ -135,16 +141,16 @@ inline nlohmann::ordered_json to_json(const std::string& input, const pcs::Skele
   json["warnings"] = nlohmann::ordered_json::array();
   for (const std::string& sentence : pcs::warnings(r))
     json["warnings"].push_back(in_options(sentence));
-  json["height"] = r.height;
+  json.update(to_json(r.estimates));
+  json["diameter_at_breast_height"] = diameter_json(r.estimates.diameter_at_breast_height);
   json["root_elevation"] = r.root_elevation;
   json["inclination"] = r.inclination;
   json["max_root_distance"] = r.max_root_distance;
   json["hidden_trunk_length"] = r.hidden_trunk_length;
   json["hidden_trunk_volume"] = r.hidden_trunk_volume;
   json["breast_height"] = r.breast_height;
-  json["diameter_at_breast_height"] = nullptr;
-  if (r.diameter_at_breast_height > 0) // 0 if the tree is lower
-    json["diameter_at_breast_height"] = r.diameter_at_breast_height;
+  json["skeleton"] = {{"height", r.height},
+                      {"diameter_at_breast_height", diameter_json(r.diameter_at_breast_height)}};
   json["stem_diameters"] = r.stem_diameters;
   json["total"] = to_json(r.total);
   json["by_order"] = nlohmann::ordered_json::array();

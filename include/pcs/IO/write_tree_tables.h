@@ -220,7 +220,7 @@ void write_tree_table(const std::string& path,
                       const Tree_skeleton<Kernel>& tree,
                       const typename Kernel::Vector_3& up = typename Kernel::Vector_3(0, 0, 1),
                       double breast_height = 1.3,
-                      const Skeleton_errors& errors = Skeleton_errors())
+                      const Tree_values& errors = Tree_values())
 {
   if (!(breast_height > 0) || !std::isfinite(breast_height))
     throw Invalid_input("pcs::IO::write_tree_table(): breast_height must be finite and positive");

@@ -42,6 +42,19 @@ struct Scan_station
   double azimuth_step = 0, elevation_step = 0;
 };
 
+//! \ingroup PkgPcsSkeletonRef
+//! estimated values of a tree, or their standard errors
+struct Tree_values
+{
+  double height = 0;                    ///< [L]
+  double diameter_at_breast_height = 0; ///< [L]
+  double trunk_length = 0;              ///< [L]
+  double length = 0;                    ///< of the branches that were scanned at all [L]
+  double volume = 0;                    ///< of all branches [L^3]
+  double trunk_volume = 0;              ///< [L^3]
+  std::vector<double> volume_by_size;   ///< of the classes in `Skeleton_report::by_size` [L^3]
+};
+
 /*!
   \ingroup PkgPcsSkeletonRef
   \brief standard deviations of a skeleton among resampled copies of its scan.
@@ -164,7 +177,15 @@ struct Skeleton_report
   //! upper bounds of the radii of the classes in `by_size`; the last class has no upper bound
   std::vector<double> size_bounds;
   std::vector<Branch_totals> by_size; ///< thinnest class first
-  Skeleton_spread spread;             ///< standard deviations among resampled copies
+  /*!
+    Best estimates of the values of the tree. With resampled copies that have at least half of the
+    points, they are the estimates of [Hodges, Lehmann 1963] from the skeleton, those of the copies
+    and those of displaced points: medians of the means of all pairs. They differ less between
+    nearly equal scans than the values of a single skeleton, which are the other members of this
+    report. Without such copies, they equal these.
+  */
+  Tree_values estimates;
+  Skeleton_spread spread; ///< standard deviations among resampled copies
 
   //! wall-clock time of each stage [s]
   struct Seconds
@@ -185,30 +206,31 @@ inline double jackknife_factor(double fraction)
   return fraction > 0 && fraction < 1 ? std::max(1.0, std::sqrt(fraction / (1 - fraction))) : 1;
 }
 
+/// Returns the values of the skeleton alone.
+inline Tree_values values_of_skeleton(const Skeleton_report& r)
+{
+  Tree_values v;
+  v.height = r.height;
+  v.diameter_at_breast_height = r.diameter_at_breast_height;
+  v.length = r.total.length;
+  v.volume = r.total.volume;
+  if (!r.by_order.empty()) {
+    v.trunk_length = r.by_order.front().length;
+    v.trunk_volume = r.by_order.front().volume;
+  }
+  for (const Branch_totals& size : r.by_size)
+    v.volume_by_size.push_back(size.volume);
+  return v;
+}
+
 } // namespace internal
 
 /*!
   \ingroup PkgPcsSkeletonRef
-  \brief standard errors of the values of a skeleton: differences from the true tree.
+  \brief returns the standard errors of the estimates of a report: differences from the true tree.
 
-  For about 95 % of the trees, the true value lies within two standard errors.
-*/
-struct Skeleton_errors
-{
-  double height = 0;                    ///< [L]
-  double diameter_at_breast_height = 0; ///< [L]
-  double trunk_length = 0;              ///< [L]
-  double length = 0;                    ///< of the branches that were scanned at all [L]
-  double volume = 0;                    ///< of all branches [L^3]
-  double trunk_volume = 0;              ///< [L^3]
-  std::vector<double> volume_by_size;   ///< of the classes in `Skeleton_report::by_size` [L^3]
-};
-
-/*!
-  \ingroup PkgPcsSkeletonRef
-  \brief returns the standard errors of a report with a spread.
-
-  The error e of a value v with the standard deviation s among the resampled copies is
+  For about 95 % of the trees, the true value lies within two standard errors. The error e of an
+  estimate v with the standard deviation s among the resampled copies is
   \f$ e^2 = (k s)^2 + (b v)^2 \f$. The first term is the effect of chance, where k is the factor of
   the delete-d jackknife for the fraction of points in a copy. The second term holds errors that all
   copies share, such as occluded wood; b was calibrated on 139 virtual scans of all habits with 1 to
@@ -217,28 +239,29 @@ struct Skeleton_errors
 
   \return errors of 0, and no size classes, if the report has fewer than two copies
 */
-inline Skeleton_errors standard_errors(const Skeleton_report& r)
+inline Tree_values standard_errors(const Skeleton_report& r)
 {
   constexpr double shared_by_size[] = {2.2, 0.44, 0.24, 0.22, 0.032}; // thinnest class first [-]
-  Skeleton_errors result;
+  Tree_values result;
   const Skeleton_spread& s = r.spread;
+  const Tree_values& v = r.estimates;
   if (s.number_of_copies < 2 || r.by_order.empty())
     return result;
   const double factor = internal::jackknife_factor(s.fraction);
-  const auto error = [&](double deviation, double value, double shared) {
+  const auto error = [factor](double deviation, double value, double shared) {
     return std::hypot(factor * deviation, shared * value);
   };
-  result.height = error(s.height, r.height, 0.0086);
+  result.height = error(s.height, v.height, 0.0086);
   result.diameter_at_breast_height =
-      error(s.diameter_at_breast_height, r.diameter_at_breast_height, 0.016);
-  result.trunk_length = error(s.trunk_length, r.by_order.front().length, 0.021);
-  result.length = error(s.length, r.total.length, 0.21);
+      error(s.diameter_at_breast_height, v.diameter_at_breast_height, 0.016);
+  result.trunk_length = error(s.trunk_length, v.trunk_length, 0.021);
+  result.length = error(s.length, v.length, 0.21);
   const double hidden = 0.5 * r.hidden_trunk_volume;
-  result.volume = std::hypot(error(s.volume, r.total.volume, 0.076), hidden);
-  result.trunk_volume = std::hypot(error(s.trunk_volume, r.by_order.front().volume, 0.022), hidden);
-  for (std::size_t k = 0; k < std::min(s.volume_by_size.size(), r.by_size.size()); ++k)
+  result.volume = std::hypot(error(s.volume, v.volume, 0.076), hidden);
+  result.trunk_volume = std::hypot(error(s.trunk_volume, v.trunk_volume, 0.022), hidden);
+  for (std::size_t k = 0; k < std::min(s.volume_by_size.size(), v.volume_by_size.size()); ++k)
     result.volume_by_size.push_back(error(s.volume_by_size[k],
-                                          r.by_size[k].volume,
+                                          v.volume_by_size[k],
                                           shared_by_size[std::min<std::size_t>(k, 4)]));
   return result;
 }

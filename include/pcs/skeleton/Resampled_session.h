@@ -69,7 +69,7 @@ private:
   std::size_t m_number_of_wanted_copies = 0; ///< `number_of_resamples`
   std::size_t m_number_of_copies = 0;        ///< more, if those differ too much
   std::size_t m_number_of_completed_copies = 0;
-  Copy_descriptors m_copies;
+  Copy_descriptors m_copies, m_skeletons; ///< of copies; of these, the scan and displaced points
   std::unique_ptr<Session> m_session;
   std::unique_ptr<Session> m_copy;  ///< the copy in work
   std::unique_ptr<Session> m_trial; ///< see `choose_typical_skeleton()`

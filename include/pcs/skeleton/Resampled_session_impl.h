@@ -93,6 +93,8 @@ Skeleton_report Resampled_session<ConcurrencyTag>::report() const
   if (m_copies.size() > 0 && report.status == Status::converged && are_comparable())
     all.add(report, internal::root_of(*m_session));
   report.spread = all.spread();
+  if (m_skeletons.size() > 0)
+    report.estimates = m_skeletons.estimates();
   report.spread.number_of_copies = m_copies.size();
   report.spread.number_of_leafy_copies = m_copies.number_of_leafy_copies;
   report.spread.number_of_empty_copies = m_number_of_completed_copies - m_copies.size();
@@ -195,6 +197,11 @@ bool Resampled_session<ConcurrencyTag>::choose_typical_skeleton(pcs::internal::P
     m_coordinate_step = m_session->report().coordinate_step;
     m_is_single_precision = m_session->report().is_single_precision;
   }
+  if (m_skeletons.size() == 0 && are_comparable() &&
+      m_session->report().status == Status::converged) {
+    m_skeletons = m_copies;
+    m_skeletons.add(m_session->report(), internal::root_of(*m_session));
+  }
   double least = distance_from_copies(*m_session);
   for (; m_number_of_trials < m_number_of_copies && least > 1; ++m_number_of_trials) {
     if (!m_trial) {
@@ -206,6 +213,8 @@ bool Resampled_session<ConcurrencyTag>::choose_typical_skeleton(pcs::internal::P
     }
     if (!m_trial->join(progress))
       return false;
+    if (m_trial->report().status == Status::converged)
+      m_skeletons.add(m_trial->report(), internal::root_of(*m_trial));
     const double distance = distance_from_copies(*m_trial);
     if (distance < least) {
       least = distance;

@@ -272,6 +272,7 @@ BOOST_AUTO_TEST_CASE(the_report_names_the_inferred_length)
     is_named |= sentence.find("the upper 4 of the trunk") != std::string::npos;
   BOOST_TEST(is_named);
   report.spread.number_of_copies = 4;
+  report.estimates.volume = 0.1;
   const double without = pcs::standard_errors(report).volume;
   report.hidden_trunk_volume = 0.04;
   BOOST_TEST(std::abs(pcs::standard_errors(report).volume - std::hypot(without, 0.02)) < 1e-12);

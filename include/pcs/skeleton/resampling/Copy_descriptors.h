@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Descriptors of the skeletons of resampled copies: deviations, medians, and the vote on leaves.
+// Descriptors of the skeletons of resampled copies: deviations, medians, estimates, and the vote on
+// leaves.
 
 #ifndef PCS_SKELETON_RESAMPLING_COPY_DESCRIPTORS_H
 #define PCS_SKELETON_RESAMPLING_COPY_DESCRIPTORS_H
@@ -43,18 +44,35 @@ struct Copy_descriptors
 
   void add(const Skeleton_report& r, const Vec3& root_position)
   {
+    const Tree_values values = pcs::internal::values_of_skeleton(r);
     number_of_leafy_copies += r.number_of_leaf_points > 0;
-    height.push_back(r.height);
-    diameter.push_back(r.diameter_at_breast_height);
-    trunk.push_back(r.by_order.empty() ? 0 : r.by_order.front().length);
-    length.push_back(r.total.length);
-    volume.push_back(r.total.volume);
-    trunk_volume.push_back(r.by_order.empty() ? 0 : r.by_order.front().volume);
-    by_size.resize(r.by_size.size());
+    height.push_back(values.height);
+    diameter.push_back(values.diameter_at_breast_height);
+    trunk.push_back(values.trunk_length);
+    length.push_back(values.length);
+    volume.push_back(values.volume);
+    trunk_volume.push_back(values.trunk_volume);
+    by_size.resize(values.volume_by_size.size());
     for (std::size_t k = 0; k < by_size.size(); ++k)
-      by_size[k].push_back(r.by_size[k].volume);
+      by_size[k].push_back(values.volume_by_size[k]);
     for (int k = 0; k < 3; ++k)
       root[k].push_back(root_position[k]);
+  }
+
+  /// Returns the estimates of the values from the skeletons, see `Skeleton_report::estimates`.
+  Tree_values estimates() const
+  {
+    using pcs::internal::hodges_lehmann;
+    Tree_values v;
+    v.height = hodges_lehmann(height);
+    v.diameter_at_breast_height = hodges_lehmann(diameter);
+    v.trunk_length = hodges_lehmann(trunk);
+    v.length = hodges_lehmann(length);
+    v.volume = hodges_lehmann(volume);
+    v.trunk_volume = hodges_lehmann(trunk_volume);
+    for (const std::vector<double>& volumes : by_size)
+      v.volume_by_size.push_back(hodges_lehmann(volumes));
+    return v;
   }
 
   /*!

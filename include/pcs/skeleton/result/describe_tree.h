@@ -65,6 +65,7 @@ void describe_tree(const Scan& scan,
   report_sizes(tree, unit, up, breast_height, r);
   if (!tree.nodes.empty())
     r.height = std::max(r.height, unit * (top_of_leaves - up.dot(tree.nodes[0].point)));
+  r.estimates = pcs::internal::values_of_skeleton(r);
   r.root_elevation = unit * elevation_of_root(scan, tree, up, is_tree);
 }
 

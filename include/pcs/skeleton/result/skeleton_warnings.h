@@ -208,6 +208,7 @@ inline void warn_of_spread(const Skeleton_report& r, std::vector<std::string>& s
   constexpr double max_trunk = 0.05 / factor, max_volume = 0.05 / factor;
   constexpr double max_root = 0.04 / factor; // of the breast height [-]
   const Skeleton_spread& s = r.spread;
+  const Tree_values& v = r.estimates;
   std::string list;
   const auto add = [&](const char* name, double deviation, double value, double limit) {
     if (deviation > limit * value)
@@ -226,14 +227,13 @@ inline void warn_of_spread(const Skeleton_report& r, std::vector<std::string>& s
         "(do_remove_leaves(true) or do_remove_leaves(false) decides)");
   if (s.number_of_copies < 2)
     return;
-  add("height", s.height, r.height, max_height);
+  add("height", s.height, v.height, max_height);
   add("diameter at breast height",
       s.diameter_at_breast_height,
-      r.diameter_at_breast_height,
+      v.diameter_at_breast_height,
       max_diameter);
-  if (!r.by_order.empty())
-    add("length of the trunk", s.trunk_length, r.by_order.front().length, max_trunk);
-  add("volume", s.volume, r.total.volume, max_volume);
+  add("length of the trunk", s.trunk_length, v.trunk_length, max_trunk);
+  add("volume", s.volume, v.volume, max_volume);
   if (s.root > max_root * r.breast_height)
     list +=
         (list.empty() ? "" : ", ") + std::string("position of the root +- ") + short_text(s.root);
