@@ -11,6 +11,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include <atomic>
+#include <chrono>
 #include <functional>
 #include <stdexcept>
 #include <string>
@@ -177,6 +178,39 @@ BOOST_AUTO_TEST_CASE_TEMPLATE(an_exception_leaves_after_both_pieces_of_work, Tag
     }
     BOOST_TEST(has_ended);
   }
+}
+
+BOOST_AUTO_TEST_CASE_TEMPLATE(long_tasks_with_loops_of_their_own_are_done_once, Tag, Tags)
+{
+  const auto caller = std::this_thread::get_id();
+  for (std::size_t n = 0; n < 6; ++n) {
+    std::vector<std::atomic<int>> visits(n);
+    std::vector<double> sums(n, 0);
+    internal::for_each_long_task<Tag>(
+        n,
+        [&](std::size_t k) {
+          ++visits[k];
+          sums[k] = sum<Tag>(std::vector<double>(5000, double(k)));
+        },
+        [&] { BOOST_TEST((std::this_thread::get_id() == caller)); });
+    for (std::size_t k = 0; k < n; ++k) {
+      BOOST_TEST(visits[k] == 1);
+      BOOST_TEST(sums[k] == 5000.0 * double(k));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE_TEMPLATE(no_long_task_begins_after_an_exception, Tag, Tags)
+{
+  std::atomic<int> ended{0};
+  const auto fail = [&](std::size_t k) {
+    if (k == 0)
+      throw std::range_error("stop");
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    ++ended;
+  };
+  BOOST_CHECK_THROW(internal::for_each_long_task<Tag>(1000, fail, [] {}), std::range_error);
+  BOOST_TEST(ended < 900);
 }
 
 BOOST_AUTO_TEST_CASE_TEMPLATE(a_loop_in_slices_visits_every_block_once_until_it_is_stopped,

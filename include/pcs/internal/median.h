@@ -68,9 +68,9 @@ T mean_median(std::vector<T>& values)
 }
 
 /*!
-  Returns the estimate of location of [Hodges, Lehmann 1963]: the median of the means of all pairs of
-  values, each value with itself included. It is not changed by few values far off, like the median,
-  but varies less if values form two groups. 0 for no values. O(values^2).
+  Returns the estimate of location of [Hodges, Lehmann 1963]: the median of the means of all pairs,
+  where each value also forms a pair with itself. It is not changed by few values far off, like the
+  median, but varies less if values form two groups. 0 for no values. O(values^2).
 */
 inline double hodges_lehmann(const std::vector<double>& values)
 {

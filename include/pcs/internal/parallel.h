@@ -28,6 +28,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
+#include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 #define PCS_HAS_TBB 1
 #else
@@ -304,6 +305,46 @@ void invoke_both(const F& f, const G& g, [[maybe_unused]] const While_waiting& w
   }
   f();
   g();
+}
+
+/// Calls `f`; while its loops wait for other threads, this thread does not begin other tasks.
+template <class ConcurrencyTag, class F>
+void run_isolated(const F& f)
+{
+#if PCS_HAS_TBB && !defined(PCS_HAS_THREAD_SANITIZER)
+  if constexpr (is_parallel<ConcurrencyTag>()) {
+    tbb::this_task_arena::isolate(f);
+    return;
+  }
+#endif
+  f();
+}
+
+/*!
+  Calls `f(i)` once for every `i` in `[0, n)`, for few long tasks that may be parallel themselves.
+  The calling thread takes part. While it waits for the others, it calls `while_waiting()` every
+  10 ms. After an exception, no further tasks are begun; it is rethrown when all have ended.
+*/
+template <class ConcurrencyTag, class F, class While_waiting>
+void for_each_long_task(std::size_t n, const F& f, const While_waiting& while_waiting)
+{
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    try {
+      for (std::size_t i = next++; i < n; i = next++)
+        internal::run_isolated<ConcurrencyTag>([&f, i] { f(i); });
+    } catch (...) {
+      next = n;
+      throw;
+    }
+  };
+  const auto work_beside = [&] {
+    internal::for_each_index<ConcurrencyTag>(
+        n - std::min<std::size_t>(n, 1),
+        [&](std::size_t) { work(); },
+        1);
+  };
+  internal::invoke_both<ConcurrencyTag>(work, work_beside, while_waiting);
 }
 
 /// Sorts by `less`, which must be a total order so that the result is independent of the schedule.

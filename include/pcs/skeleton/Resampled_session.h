@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <vector>
 
 namespace pcs {
 namespace skeleton {
@@ -54,14 +55,27 @@ public:
 
 private:
   bool has_copies() const { return m_number_of_copies > 0; }
+  /// A skeleton of a copy or of displaced points.
+  struct Variant
+  {
+    std::unique_ptr<Session> session; ///< while it is in work, or if it is kept
+    bool is_complete = false;
+    Skeleton_report report;
+    Vec3 root = Vec3::Zero();
+  };
+
   std::unique_ptr<Session> make_session(Scan_points points) const;
+  template <class Make, class Complete>
+  bool extract_variants(const Make& make,
+                        const Complete& complete,
+                        const std::function<bool(double)>& callback);
   bool extract_copies(pcs::internal::Progress& progress);
   bool needs_more_copies();
   std::size_t number_of_copies_at_most() const;
   void vote_on_leaves();
   bool choose_typical_skeleton(pcs::internal::Progress& progress);
   bool are_comparable() const;
-  double distance_from_copies(const Session& session) const;
+  double distance_from_copies(const Skeleton_report& report, const Vec3& root) const;
 
   Scan_points m_scan;          ///< empty without copies
   Session_hints m_hints;       ///< without stations and normals; the method of the scan, once known
@@ -71,10 +85,9 @@ private:
   std::size_t m_number_of_completed_copies = 0;
   Copy_descriptors m_copies, m_skeletons; ///< of copies; of these, the scan and displaced points
   std::unique_ptr<Session> m_session;
-  std::unique_ptr<Session> m_copy;  ///< the copy in work
-  std::unique_ptr<Session> m_trial; ///< see `choose_typical_skeleton()`
-  std::size_t m_number_of_trials = 0;
-  double m_coordinate_step = 0; ///< of the scan before displacement, like the next [L]
+  std::vector<Variant> m_variants;    ///< in work
+  std::size_t m_number_of_trials = 0; ///< see `choose_typical_skeleton()`
+  double m_coordinate_step = 0;       ///< of the scan before displacement, like the next [L]
   bool m_is_single_precision = false;
   bool m_has_voted = false, m_is_leaf_removal_changed = false, m_is_displaced = false;
 };

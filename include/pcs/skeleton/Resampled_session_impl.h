@@ -5,16 +5,21 @@
 #ifndef PCS_SKELETON_RESAMPLED_SESSION_IMPL_H
 #define PCS_SKELETON_RESAMPLED_SESSION_IMPL_H
 
+#include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
 #include <pcs/skeleton/Resampled_session.h>
 #include <pcs/skeleton/Session_impl.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <functional>
 #include <limits>
 #include <memory>
+#include <mutex>
+#include <numeric>
 #include <utility>
+#include <vector>
 
 namespace pcs {
 namespace skeleton {
@@ -31,11 +36,13 @@ constexpr double least_comparable_fraction = 0.5;
 /// Largest standard error of a median for which there are enough copies, in tolerances [-].
 constexpr double settled_error = 0.5;
 
-/// Returns the root in the coordinates of the input.
+/// Returns the root in the coordinates of the input, the origin without a tree.
 template <class Tag>
 Vec3 root_of(const Session<Tag>& session)
 {
   const Branch_tree& tree = session.tree();
+  if (tree.branches.empty())
+    return Vec3::Zero();
   return session.scan().frame.to_input(tree.nodes[tree.branches.front().nodes.front()].point);
 }
 
@@ -122,25 +129,78 @@ Resampled_session<ConcurrencyTag>::make_session(Scan_points points) const
                                    std::move(hints));
 }
 
+/*!
+  Extracts the skeletons of `m_variants`, several at a time if the tag allows it. `make(k)` returns
+  the points of the variant `k`. `complete(k)` is called when its skeleton is complete, for one
+  variant at a time, in any order. The callback receives the completed fraction of them, in the
+  calling thread. Returns `false` if it stopped the work.
+*/
+template <class ConcurrencyTag>
+template <class Make, class Complete>
+bool Resampled_session<ConcurrencyTag>::extract_variants(
+    const Make& make,
+    const Complete& complete,
+    const std::function<bool(double)>& callback)
+{
+  std::vector<std::atomic<double>> fractions(m_variants.size());
+  for (std::size_t k = 0; k < m_variants.size(); ++k)
+    fractions[k] = m_variants[k].is_complete ? 1 : 0;
+  pcs::internal::Progress all(callback);
+  pcs::internal::Shared_progress shared(all);
+  const auto report_all = [&] {
+    return shared(std::accumulate(fractions.begin(), fractions.end(), 0.0) /
+                  double(fractions.size()));
+  };
+  std::mutex completion;
+  pcs::internal::for_each_long_task<ConcurrencyTag>(
+      m_variants.size(),
+      [&](std::size_t k) {
+        Variant& variant = m_variants[k];
+        if (variant.is_complete || !report_all())
+          return;
+        if (!variant.session)
+          variant.session = make_session(make(k));
+        pcs::internal::Progress part([&](double f) {
+          fractions[k] = f;
+          return report_all();
+        });
+        if (!variant.session->join(part))
+          return;
+        variant.report = variant.session->report();
+        variant.root = internal::root_of(*variant.session);
+        const std::lock_guard<std::mutex> lock(completion);
+        variant.is_complete = true;
+        fractions[k] = 1;
+        complete(k);
+      },
+      report_all);
+  return !all.is_cancelled() && std::all_of(m_variants.begin(),
+                                            m_variants.end(),
+                                            [](const Variant& v) { return v.is_complete; });
+}
+
 /// Extracts the remaining skeletons of the copies, and of more copies while their medians are
 /// uncertain.
 template <class ConcurrencyTag>
 bool Resampled_session<ConcurrencyTag>::extract_copies(pcs::internal::Progress& progress)
 {
   do {
-    for (; m_number_of_completed_copies < m_number_of_copies; ++m_number_of_completed_copies) {
-      pcs::internal::Progress part([&](double f) { // half of it until the wanted copies are done
-        const double done = double(m_number_of_completed_copies) + f;
-        return progress(done / (done + double(m_number_of_wanted_copies)));
-      });
-      if (!m_copy)
-        m_copy = make_session(resample_scan(m_scan, m_number_of_completed_copies));
-      if (!m_copy->join(part))
-        return false;
-      if (m_copy->report().status == Status::converged)
-        m_copies.add(m_copy->report(), internal::root_of(*m_copy));
-      m_copy.reset();
-    }
+    const std::size_t first = m_number_of_completed_copies;
+    m_variants.resize(m_number_of_copies - first);
+    const bool is_complete =
+        extract_variants([&](std::size_t k) { return resample_scan(m_scan, first + k); },
+                         [&](std::size_t k) { m_variants[k].session.reset(); },
+                         [&](double f) { // half of it until the wanted copies are done
+                           const double done = double(first) + f * double(m_variants.size());
+                           return progress(done / (done + double(m_number_of_wanted_copies)));
+                         });
+    if (!is_complete)
+      return false;
+    for (const Variant& copy : m_variants)
+      if (copy.report.status == Status::converged)
+        m_copies.add(copy.report, copy.root);
+    m_number_of_completed_copies = m_number_of_copies;
+    m_variants.clear();
   } while (needs_more_copies());
   return true;
 }
@@ -185,9 +245,9 @@ void Resampled_session<ConcurrencyTag>::vote_on_leaves()
 
 /*!
   If the skeleton of the scan is far from the medians of the copies, extracts skeletons of the scan
-  whose coordinates are displaced by at most a thousandth of the spacing, until one is close enough
-  or there are as many as copies, and keeps the closest of all. Decisions that depend on chance are
-  thus made as in most copies.
+  whose coordinates are displaced by at most a thousandth of the spacing: as many as the caller
+  wanted copies, and again until one is close enough or there are as many as copies. Keeps the
+  closest of all. Decisions that depend on chance are thus made as in most copies.
 */
 template <class ConcurrencyTag>
 bool Resampled_session<ConcurrencyTag>::choose_typical_skeleton(pcs::internal::Progress& progress)
@@ -202,26 +262,41 @@ bool Resampled_session<ConcurrencyTag>::choose_typical_skeleton(pcs::internal::P
     m_skeletons = m_copies;
     m_skeletons.add(m_session->report(), internal::root_of(*m_session));
   }
-  double least = distance_from_copies(*m_session);
-  for (; m_number_of_trials < m_number_of_copies && least > 1; ++m_number_of_trials) {
-    if (!m_trial) {
+  double least = distance_from_copies(m_session->report(), internal::root_of(*m_session));
+  while (m_number_of_trials < m_number_of_copies && least > 1) {
+    m_variants.resize(std::min(m_number_of_wanted_copies, m_number_of_copies - m_number_of_trials));
+    const auto displaced = [&](std::size_t k) {
       Scan_points points = m_scan;
       displace_points(points.positions,
                       displacement * m_session->report().spacing,
-                      m_number_of_trials + 1);
-      m_trial = make_session(std::move(points));
-    }
-    if (!m_trial->join(progress))
+                      m_number_of_trials + k + 1);
+      return points;
+    };
+    const auto distance = [&](const Variant& v) { return distance_from_copies(v.report, v.root); };
+    const auto keep_closest = [&](std::size_t k) { // to save memory
+      for (std::size_t j = 0; j < m_variants.size(); ++j)
+        if (j != k && m_variants[j].is_complete && m_variants[j].session) {
+          const bool is_closer = std::make_pair(distance(m_variants[j]), j) <
+                                 std::make_pair(distance(m_variants[k]), k);
+          m_variants[is_closer ? k : j].session.reset();
+        }
+    };
+    if (!extract_variants(displaced, keep_closest, [&](double f) {
+          const double done = double(m_number_of_trials) + f * double(m_variants.size());
+          return progress(done / double(m_number_of_copies));
+        }))
       return false;
-    if (m_trial->report().status == Status::converged)
-      m_skeletons.add(m_trial->report(), internal::root_of(*m_trial));
-    const double distance = distance_from_copies(*m_trial);
-    if (distance < least) {
-      least = distance;
-      m_session = std::move(m_trial);
-      m_is_displaced = true;
+    m_number_of_trials += m_variants.size();
+    for (Variant& trial : m_variants) {
+      if (trial.report.status == Status::converged)
+        m_skeletons.add(trial.report, trial.root);
+      if (trial.session && distance(trial) < least) {
+        least = distance(trial);
+        m_session = std::move(trial.session);
+        m_is_displaced = true;
+      }
     }
-    m_trial.reset();
+    m_variants.clear();
   }
   return true;
 }
@@ -237,12 +312,12 @@ bool Resampled_session<ConcurrencyTag>::are_comparable() const
 /// Returns the distance of a skeleton from the medians of the copies, see `Copy_descriptors`; above
 /// 1, it is too large [-]. Infinite without a tree, 0 if the copies are not comparable.
 template <class ConcurrencyTag>
-double Resampled_session<ConcurrencyTag>::distance_from_copies(const Session& session) const
+double Resampled_session<ConcurrencyTag>::distance_from_copies(const Skeleton_report& r,
+                                                               const Vec3& root) const
 {
-  const Skeleton_report& r = session.report();
   if (r.status != Status::converged)
     return std::numeric_limits<double>::infinity();
-  return are_comparable() ? m_copies.distance_from_medians(r, internal::root_of(session)) : 0;
+  return are_comparable() ? m_copies.distance_from_medians(r, root) : 0;
 }
 
 } // namespace skeleton
