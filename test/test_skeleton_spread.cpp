@@ -119,7 +119,7 @@ BOOST_AUTO_TEST_CASE(figures_that_depend_on_chance_are_named)
   append(points, cylinder(500, 0.1, 3, Point(3, 0, 0), Vector(0, 0, 1)));
   Tree tree;
   const pcs::Skeleton_report report =
-      pcs::extract_tree_skeleton(points, tree, np::number_of_resamples(6));
+      pcs::extract_tree_skeleton(points, tree, np::number_of_resamples(3));
   BOOST_TEST_REQUIRE(report.spread.root > 1);
   std::string all;
   for (const std::string& sentence : pcs::warnings(report))
@@ -380,13 +380,13 @@ BOOST_AUTO_TEST_CASE(uncertain_medians_need_more_copies_which_give_estimates)
   BOOST_TEST(std::abs(report.estimates.volume - report.total.volume) < 3 * report.spread.volume);
 }
 
-BOOST_AUTO_TEST_CASE(estimates_lie_between_two_groups_of_skeletons)
+BOOST_AUTO_TEST_CASE(estimates_are_medians)
 {
   pcs::Skeleton_report report;
   report.by_order.resize(1);
   report.by_size.resize(2);
   pcs::skeleton::Copy_descriptors skeletons;
-  for (const double value : {1, 1, 1, 3, 3}) {
+  for (const double value : {1, 9, 2, 3, 1}) {
     report.height = report.diameter_at_breast_height = value;
     report.total.length = report.total.volume = value;
     report.by_order[0].length = report.by_order[0].volume = value;

@@ -179,10 +179,9 @@ struct Skeleton_report
   std::vector<Branch_totals> by_size; ///< thinnest class first
   /*!
     Best estimates of the values of the tree. With resampled copies that have at least half of the
-    points, they are the estimates of [Hodges, Lehmann 1963] from the skeleton, those of the copies
-    and those of displaced points: medians of the means of all pairs. They differ less between
-    nearly equal scans than the values of a single skeleton, which are the other members of this
-    report. Without such copies, they equal these.
+    points, they are medians of the values of the scan, the copies and displaced points. They differ
+    less between nearly equal scans than the values of a single skeleton, which are the other
+    members of this report. Without such copies, they equal these.
   */
   Tree_values estimates;
   Skeleton_spread spread; ///< standard deviations among resampled copies

@@ -67,20 +67,6 @@ T mean_median(std::vector<T>& values)
   return T(0.5) * (lower + internal::value_of_rank(values, n / 2));
 }
 
-/*!
-  Returns the estimate of location of [Hodges, Lehmann 1963]: the median of the means of all pairs,
-  where each value also forms a pair with itself. It is not changed by few values far off, like the
-  median, but varies less if values form two groups. 0 for no values. O(values^2).
-*/
-inline double hodges_lehmann(const std::vector<double>& values)
-{
-  std::vector<double> means;
-  for (std::size_t i = 0; i < values.size(); ++i)
-    for (std::size_t j = 0; j <= i; ++j)
-      means.push_back(0.5 * (values[i] + values[j]));
-  return internal::mean_median(means);
-}
-
 } // namespace internal
 } // namespace pcs
 

@@ -33,7 +33,7 @@ constexpr double end_of_stages = 0.5, end_of_copies = 0.8, end_of_vote = 0.9;
 /// Copies with a smaller fraction of the points are not compared with the scan [-].
 constexpr double least_comparable_fraction = 0.5;
 
-/// Largest standard error of a median for which there are enough copies, in tolerances [-].
+/// Largest standard error of a median for which there are enough skeletons, in tolerances [-].
 constexpr double settled_error = 0.5;
 
 /// Returns the root in the coordinates of the input, the origin without a tree.
@@ -244,10 +244,11 @@ void Resampled_session<ConcurrencyTag>::vote_on_leaves()
 }
 
 /*!
-  If the skeleton of the scan is far from the medians of the copies, extracts skeletons of the scan
-  whose coordinates are displaced by at most a thousandth of the spacing: as many as the caller
-  wanted copies, and again until one is close enough or there are as many as copies. Keeps the
-  closest of all. Decisions that depend on chance are thus made as in most copies.
+  If the skeleton of the scan is far from the medians of the copies, or the medians of all skeletons
+  are uncertain, extracts skeletons of the scan whose coordinates are displaced by at most a
+  thousandth of the spacing: as many as the caller wanted copies, and again until neither is so or
+  there are as many as copies. A skeleton that is too far is replaced by the closest one. Decisions
+  that depend on chance are thus made as in most copies.
 */
 template <class ConcurrencyTag>
 bool Resampled_session<ConcurrencyTag>::choose_typical_skeleton(pcs::internal::Progress& progress)
@@ -263,7 +264,11 @@ bool Resampled_session<ConcurrencyTag>::choose_typical_skeleton(pcs::internal::P
     m_skeletons.add(m_session->report(), internal::root_of(*m_session));
   }
   double least = distance_from_copies(m_session->report(), internal::root_of(*m_session));
-  while (m_number_of_trials < m_number_of_copies && least > 1) {
+  const auto is_settled = [&] {
+    return least <= 1 &&
+           m_skeletons.error_of_medians(m_session->report()) <= internal::settled_error;
+  };
+  while (m_number_of_trials < m_number_of_copies && !is_settled()) {
     m_variants.resize(std::min(m_number_of_wanted_copies, m_number_of_copies - m_number_of_trials));
     const auto displaced = [&](std::size_t k) {
       Scan_points points = m_scan;
@@ -290,7 +295,7 @@ bool Resampled_session<ConcurrencyTag>::choose_typical_skeleton(pcs::internal::P
     for (Variant& trial : m_variants) {
       if (trial.report.status == Status::converged)
         m_skeletons.add(trial.report, trial.root);
-      if (trial.session && distance(trial) < least) {
+      if (trial.session && least > 1 && distance(trial) < least) {
         least = distance(trial);
         m_session = std::move(trial.session);
         m_is_displaced = true;

@@ -59,19 +59,22 @@ struct Copy_descriptors
       root[k].push_back(root_position[k]);
   }
 
-  /// Returns the estimates of the values from the skeletons, see `Skeleton_report::estimates`.
+  /// Returns the medians of the values. For an even number of skeletons, a median is the mean of
+  /// the two middle values.
   Tree_values estimates() const
   {
-    using pcs::internal::hodges_lehmann;
+    const auto median = [](std::vector<double> values) {
+      return pcs::internal::mean_median(values);
+    };
     Tree_values v;
-    v.height = hodges_lehmann(height);
-    v.diameter_at_breast_height = hodges_lehmann(diameter);
-    v.trunk_length = hodges_lehmann(trunk);
-    v.length = hodges_lehmann(length);
-    v.volume = hodges_lehmann(volume);
-    v.trunk_volume = hodges_lehmann(trunk_volume);
+    v.height = median(height);
+    v.diameter_at_breast_height = median(diameter);
+    v.trunk_length = median(trunk);
+    v.length = median(length);
+    v.volume = median(volume);
+    v.trunk_volume = median(trunk_volume);
     for (const std::vector<double>& volumes : by_size)
-      v.volume_by_size.push_back(hodges_lehmann(volumes));
+      v.volume_by_size.push_back(median(volumes));
     return v;
   }
 
