@@ -119,7 +119,7 @@ BOOST_AUTO_TEST_CASE(figures_that_depend_on_chance_are_named)
   append(points, cylinder(500, 0.1, 3, Point(3, 0, 0), Vector(0, 0, 1)));
   Tree tree;
   const pcs::Skeleton_report report =
-      pcs::extract_tree_skeleton(points, tree, np::number_of_resamples(3));
+      pcs::extract_tree_skeleton(points, tree, np::number_of_resamples(6));
   BOOST_TEST_REQUIRE(report.spread.root > 1);
   std::string all;
   for (const std::string& sentence : pcs::warnings(report))

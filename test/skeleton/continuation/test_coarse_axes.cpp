@@ -3,6 +3,9 @@
 // A thick limb with few points is found in the thinned scan; bundles of twigs and stems that are
 // seen from one side are not mistaken for one.
 
+#include <pcs/internal/progress.h>
+#include <pcs/skeleton/Session.h>
+#include <pcs/skeleton/Session_impl.h>
 #include <pcs/skeleton/continuation/add_coarse_pieces.h>
 #include <pcs/skeleton/continuation/find_coarse_axes.h>
 #include <pcs/skeleton/scan/prepare_scan.h>
@@ -78,6 +81,7 @@ public:
                                                   Coarse_axis_options(),
                                                   [](double) { return true; });
   }
+  const std::vector<Vec3>& points() const { return m_points; }
   /// Returns the axis of the limb as a coarse axis.
   Coarse_axis true_axis() const
   {
@@ -235,6 +239,40 @@ BOOST_AUTO_TEST_CASE(the_search_can_be_stopped)
                                              [&](double) { return ++calls < 2; });
   BOOST_TEST(calls == 2);
   BOOST_TEST(none_found.empty());
+}
+
+BOOST_AUTO_TEST_CASE(a_session_that_is_stopped_at_coarse_axes_goes_on)
+{
+  using Session = pcs::skeleton::Session<CGAL::Sequential_tag>;
+  const Sparse_limb limb(300, 2 * pi, 0, 0);
+  Session_options options{Session_hints()};
+  std::size_t calls = 0;
+  pcs::internal::Progress count([&](double) { return ++calls > 0; });
+  Session full(limb.points(), {}, options);
+  BOOST_TEST_REQUIRE(full.join(count));
+  const std::size_t with_coarse_axes = std::exchange(calls, 0);
+  options.coarse_axes.factors.clear();
+  Session without(limb.points(), {}, options);
+  BOOST_TEST_REQUIRE(without.join(count));
+  // They change the skeleton, and their search asks whether to go on.
+  BOOST_TEST(full.report().total.volume > 1.1 * without.report().total.volume);
+  BOOST_TEST(with_coarse_axes > calls);
+
+  std::size_t stops = 0;
+  Session stopped(limb.points(), {}, Session_options(Session_hints()));
+  for (std::size_t limit = 1; limit < with_coarse_axes; ++limit) {
+    std::size_t left = limit;
+    pcs::internal::Progress stop([&](double) { return left-- > 0; });
+    if (stopped.join(stop))
+      break;
+    ++stops;
+  }
+  BOOST_TEST(stops > 10u);
+  BOOST_TEST_REQUIRE(stopped.tree().nodes.size() == full.tree().nodes.size());
+  for (std::size_t v = 0; v < full.tree().nodes.size(); ++v) {
+    BOOST_TEST((stopped.tree().nodes[v].point == full.tree().nodes[v].point));
+    BOOST_TEST(stopped.tree().nodes[v].radius == full.tree().nodes[v].radius);
+  }
 }
 
 BOOST_AUTO_TEST_SUITE_END()
