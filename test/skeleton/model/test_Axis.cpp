@@ -1,7 +1,9 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Resampling of an axis, and the nearest position on it.
+// Resampling of an axis, the nearest position on it, and the points near it.
 
+#include <pcs/internal/Random_stream.h>
+#include <pcs/neighborhood/Nearest_neighbors.h>
 #include <pcs/skeleton/model/Axis.h>
 
 #include <boost/test/unit_test.hpp>
@@ -9,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 namespace test_Axis {
@@ -38,6 +41,21 @@ std::size_t number_of_visits(const pcs::skeleton::Axis& axis, std::size_t guess,
   search.walk<true>(guess);
   search.walk<false>(guess);
   return count;
+}
+
+Vec3 random_vector(pcs::internal::Random_stream& random, double most)
+{
+  const double x = random.uniform(-most, most), y = random.uniform(-most, most);
+  return Vec3(x, y, random.uniform(-most, most));
+}
+
+/// A random walk, which comes near itself.
+pcs::skeleton::Axis random_axis(pcs::internal::Random_stream& random, std::size_t count)
+{
+  std::vector<Vec3> nodes{Vec3::Zero()};
+  while (nodes.size() < count)
+    nodes.push_back(nodes.back() + random_vector(random, 1));
+  return axis_of(nodes);
 }
 
 } // namespace
@@ -175,6 +193,48 @@ BOOST_AUTO_TEST_CASE(the_search_ends_where_the_axis_leads_away)
   for (int k = 0; k <= 20; ++k)
     nodes[std::size_t(k)] = Vec3(std::cos(0.1 * k), std::sin(0.1 * k), 1e-3 * std::abs(k - 10.5));
   BOOST_TEST(number_of_visits(axis_of(nodes), 10, Vec3(0, 0, 0)) == 5u);
+}
+
+BOOST_AUTO_TEST_CASE(a_projector_finds_the_nearest_of_all_segments)
+{
+  pcs::internal::Random_stream random(1, 1);
+  for (const std::size_t count : {2u, 9u, 10u, 60u}) {
+    auto axis = random_axis(random, count);
+    axis[count / 2].point = axis[count / 2 - 1].point; // a segment without length
+    const pcs::skeleton::Axis_projector project(axis);
+    for (int k = 0; k < 300; ++k) {
+      const Vec3 p = k % 10 == 0 ? axis[std::size_t(k) % count].point : random_vector(random, 5);
+      const auto expected = pcs::skeleton::nearest_place(axis, p);
+      for (const std::size_t guess : {std::size_t(0), count / 2, count}) {
+        const auto place = project(guess, p);
+        BOOST_TEST(place.segment == expected.segment);
+        BOOST_TEST(place.share == expected.share);
+        BOOST_TEST(place.distance == expected.distance);
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(points_near_an_axis_are_near_one_of_its_nodes)
+{
+  pcs::internal::Random_stream random(2, 1);
+  const auto axis = random_axis(random, 30);
+  pcs::skeleton::Scan scan;
+  for (int k = 0; k < 3000; ++k)
+    scan.points.push_back(random_vector(random, 5));
+  scan.search = std::make_unique<pcs::neighborhood::Nearest_neighbors>(scan.points);
+  const auto reach = [](std::size_t k) { return 0.25 * double(k % 7); };
+  std::vector<pcs::skeleton::Index> expected;
+  for (std::size_t i = 0; i < scan.points.size(); ++i)
+    for (std::size_t k = 0; k < axis.size(); ++k)
+      if (i == 5 || (scan.points[i] - axis[k].point).norm() < reach(k)) {
+        expected.push_back(pcs::skeleton::Index(i));
+        break;
+      }
+  BOOST_TEST(expected.size() > 100u);
+  BOOST_TEST(expected.size() < 2900u);
+  BOOST_TEST(pcs::skeleton::points_near(scan, axis, reach, {5}) == expected,
+             boost::test_tools::per_element());
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -88,17 +88,16 @@ enclosed_share(const Scan& scan, const Chain_options& rules, double noise, const
         return node.radius >= thick;
       }))
     return 0;
-  std::vector<Index> near;
-  for (std::size_t k = 0; k < axis.size(); ++k) {
+  const auto reach = [&](std::size_t k) {
     const double r = axis[k].radius;
     const double length = k + 1 < axis.size() ? (axis[k + 1].point - axis[k].point).norm() : 0;
-    scan.search->append_within(axis[k].point, std::hypot(r + width(r), length), near);
-  }
-  std::sort(near.begin(), near.end());
-  near.erase(std::unique(near.begin(), near.end()), near.end());
+    return std::hypot(r + width(r), length);
+  };
+  const Axis_projector project(axis);
+  Axis_place place;
   double inside = 0, all = 0;
-  for (const Index i : near) {
-    const Axis_place place = nearest_place(axis, scan.points[i]);
+  for (const Index i : points_near(scan, axis, reach)) {
+    place = project(place.segment, scan.points[i]);
     const double r = radius_at(axis, place);
     if (scan.is_outlier[i] || place.share < 0 || place.share > 1 || place.distance > r + width(r))
       continue;

@@ -182,8 +182,10 @@ public:
     m_set.axes[a].meeting = meeting;
     const Axis& axis = m_set.axes[a].axis;
     std::vector<Index> points;
+    const Axis_projector project(axis);
+    Axis_place place;
     for (const Index i : points_near(a)) {
-      const Axis_place place = nearest_place(axis, m_scan.points[i]);
+      place = project(place.segment, m_scan.points[i]);
       const double r = radius_at(axis, place);
       if (!may_take(i, a, r))
         continue;
@@ -348,16 +350,15 @@ private:
   /// Returns the points that axis `a` explains, and those near it.
   std::vector<Index> points_near(Index a) const
   {
-    std::vector<Index> near = m_points[a];
     const Axis& axis = m_set.axes[a].axis;
-    for (std::size_t k = 0; k + 1 < axis.size(); ++k) {
+    const auto reach = [&](std::size_t k) {
+      if (k + 1 == axis.size())
+        return 0.0;
       const double length = (axis[k + 1].point - axis[k].point).norm();
       const double r = std::max(axis[k].radius, axis[k + 1].radius);
-      m_scan.search->append_within(axis[k].point, length + r + cover(r), near);
-    }
-    std::sort(near.begin(), near.end());
-    near.erase(std::unique(near.begin(), near.end()), near.end());
-    return near;
+      return length + r + cover(r);
+    };
+    return skeleton::points_near(m_scan, axis, reach, m_points[a]);
   }
 
   const Scan& m_scan;

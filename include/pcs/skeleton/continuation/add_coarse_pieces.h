@@ -45,8 +45,14 @@ public:
       m_known(m_compared)
   {
     const Axis& axis = coarse.axis;
-    for (const Index i : points_near(axis)) {
-      const Axis_place place = nearest_place(axis, scan.points[i]);
+    const auto reach = [&](std::size_t k) { // 0: the node is not credible
+      const double length = k + 1 < axis.size() ? (axis[k + 1].point - axis[k].point).norm() : 0;
+      return axis[k].radius >= coarse.thinnest ? rules.reach * axis[k].radius + length : 0;
+    };
+    const Axis_projector project(axis);
+    Axis_place place;
+    for (const Index i : points_near(scan, axis, reach)) {
+      place = project(place.segment, scan.points[i]);
       const double r = radius_at(axis, place);
       if (place.share < 0 || place.share > 1 || place.distance > rules.reach * r || !is_used[i])
         continue;
@@ -96,20 +102,6 @@ private:
     Index index;
     Axis_place place;
   };
-
-  /// Returns the points near the credible nodes.
-  std::vector<Index> points_near(const Axis& axis) const
-  {
-    std::vector<Index> near;
-    for (std::size_t k = 0; k < axis.size(); ++k) {
-      const double length = k + 1 < axis.size() ? (axis[k + 1].point - axis[k].point).norm() : 0;
-      if (axis[k].radius >= m_coarse.thinnest)
-        m_scan.search->append_within(axis[k].point, m_rules.reach * axis[k].radius + length, near);
-    }
-    std::sort(near.begin(), near.end());
-    near.erase(std::unique(near.begin(), near.end()), near.end());
-    return near;
-  }
 
   const Scan& m_scan;
   const Coarse_axis& m_coarse;

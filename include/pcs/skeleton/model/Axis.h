@@ -107,11 +107,13 @@ public:
     }
   }
 
+  double distance() const { return std::sqrt(m_squared_distance); } ///< of the nearest one [L]
+
   Axis_place place() const
   {
     Axis_place place;
     place.segment = static_cast<Index>(m_segment);
-    place.distance = std::sqrt(m_squared_distance);
+    place.distance = distance();
     const bool is_open = (m_segment == 0 && m_share < 0) || (m_segment == m_last && m_share > 1);
     place.share = is_open ? m_share : std::min(1.0, std::max(0.0, m_share));
     return place;
@@ -160,6 +162,81 @@ inline Axis_place nearest_place(const Axis& axis, const Vec3& p)
   for (std::size_t s = 0; s + 1 < axis.size(); ++s)
     search.offer(s);
   return search.place();
+}
+
+/// Projects many points onto the nearest of all segments of an axis. Balls around runs of segments
+/// show which of these are too far away.
+class Axis_projector
+{
+public:
+  /// At least two nodes.
+  explicit Axis_projector(const Axis& axis) : m_segments(segments_of(axis))
+  {
+    for (std::size_t begin = 0; begin < m_segments.size(); begin += run) {
+      const std::size_t end = std::min(m_segments.size(), begin + run);
+      Ball ball;
+      ball.center = 0.5 * (axis[begin].point + axis[end].point);
+      for (std::size_t k = begin; k <= end; ++k)
+        ball.radius = std::max(ball.radius, (axis[k].point - ball.center).norm());
+      m_balls.push_back(ball);
+    }
+  }
+
+  /// Returns `nearest_place(axis, p)`. It is found faster if the segment `guess` is near.
+  Axis_place operator()(std::size_t guess, const Vec3& p) const
+  {
+    constexpr double rounding = 1 + 1e-6;
+    const auto segment_at = [&](std::size_t s) -> const Axis_segment& { return m_segments[s]; };
+    const std::size_t last = m_segments.size() - 1;
+    const Axis_segment& guessed = m_segments[std::min(guess, last)];
+    double least = std::sqrt(guessed.squared_distance(guessed.share(p), p));
+    internal::Place_search search(last, segment_at, p);
+    for (std::size_t b = 0; b < m_balls.size(); ++b) {
+      const double reach = rounding * (least + m_balls[b].radius);
+      if ((p - m_balls[b].center).squaredNorm() > reach * reach)
+        continue;
+      const std::size_t end = std::min(m_segments.size(), (b + 1) * run);
+      for (std::size_t s = b * run; s < end; ++s)
+        search.offer(s);
+      least = std::min(least, search.distance());
+    }
+    return search.place();
+  }
+
+private:
+  struct Ball
+  {
+    Vec3 center;
+    double radius = 0; ///< [L]
+  };
+  static constexpr std::size_t run = 8; ///< segments of a ball [count]
+
+  std::vector<Axis_segment> m_segments;
+  std::vector<Ball> m_balls;
+};
+
+/// Returns the points closer than `reach(k)` [L] to a node `k` of the axis, and those of `near`, in
+/// increasing order.
+template <class Reach>
+std::vector<Index>
+points_near(const Scan& scan, const Axis& axis, const Reach& reach, std::vector<Index> near = {})
+{
+  constexpr double rounding = 1 - 1e-9;
+  double before = 0; // reach of the previous node
+  for (std::size_t k = 0; k < axis.size(); ++k) {
+    const double r = reach(k);
+    const auto known = static_cast<std::ptrdiff_t>(near.size());
+    scan.search->append_within(axis[k].point, r, near);
+    const auto is_known = [&](Index i) {
+      return k > 0 &&
+             (scan.points[i] - axis[k - 1].point).squaredNorm() < rounding * before * before;
+    };
+    near.erase(std::remove_if(near.begin() + known, near.end(), is_known), near.end());
+    before = r;
+  }
+  std::sort(near.begin(), near.end());
+  near.erase(std::unique(near.begin(), near.end()), near.end());
+  return near;
 }
 
 inline double radius_at(const Axis& axis, const Axis_place& place)
