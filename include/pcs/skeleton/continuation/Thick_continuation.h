@@ -203,21 +203,45 @@ private:
     return first;
   }
 
-  /// Returns the score of a bent tube, without the terms for bends and radii.
-  double score_of(const Axis_node& end, const Bent_tube& tube, const std::vector<Index>& near) const
+  /// Point beside a chord.
+  struct Chord_point
   {
-    const Vec3 chord = tube.target.point - end.point;
-    const double length = chord.norm();
+    Vec3 offset;  ///< from the chord [L]
+    double share; ///< of the chord at which it lies [-]
+  };
+
+  /// Returns the points, relative to the end, that lie on or inside tubes of at most the radius
+  /// `thickest` [L] along a chord with bends by at most `bend` lengths.
+  std::vector<Chord_point> points_beside(const Vec3& chord,
+                                         double thickest,
+                                         double bend,
+                                         const std::vector<Vec3>& near) const
+  {
+    constexpr double rounding = 1 + 1e-6;
+    const double length = chord.norm(), width = rounding * (1 + m_rules.band) * thickest;
+    const double most_bent = rounding * bend * length;
     const Vec3 d = chord / length;
-    double score = 0;
-    for (const Index i : near) {
-      const Vec3 v = m_scan.points[i] - end.point;
+    std::vector<Chord_point> result;
+    for (const Vec3& v : near) {
       const double t = v.dot(d) / length;
       if (t < 0 || t > 1)
         continue;
-      const double r = (1 - t) * end.radius + t * tube.radius;
-      const double x =
-          ((v - t * chord - 4 * t * (1 - t) * tube.bend).norm() / r - 1) / m_rules.band;
+      const Vec3 offset = v - t * chord;
+      const double reach = width + 4 * t * (1 - t) * most_bent;
+      if (offset.squaredNorm() < reach * reach)
+        result.push_back({offset, t});
+    }
+    return result;
+  }
+
+  /// Returns the score of a bent tube, without the terms for bends and radii.
+  double
+  score_of(const Axis_node& end, const Bent_tube& tube, const std::vector<Chord_point>& near) const
+  {
+    double score = 0;
+    for (const Chord_point& p : near) {
+      const double t = p.share, r = (1 - t) * end.radius + t * tube.radius;
+      const double x = ((p.offset - 4 * t * (1 - t) * tube.bend).norm() / r - 1) / m_rules.band;
       score += std::abs(x) < 1 ? 1 - std::abs(x) : x < 0 ? -2 : 0;
     }
     return score;
@@ -228,15 +252,22 @@ private:
                       const std::vector<Thick_target>& targets,
                       const std::vector<Index>& near) const
   {
+    constexpr double widest = 1.5, most_bent = 0.15;
+    std::vector<Vec3> offsets;
+    for (const Index i : near)
+      offsets.push_back(m_scan.points[i] - end.point);
     std::vector<Bent_tube> tubes;
-    for (const Thick_target& target : targets)
-      for (const double ratio : {1.0, 1.25, 1.5}) {
+    for (const Thick_target& target : targets) {
+      const std::vector<Chord_point> beside =
+          points_beside(target.point - end.point, widest * end.radius, 0, offsets);
+      for (const double ratio : {1.0, 1.25, widest}) {
         Bent_tube tube;
         tube.target = target;
         tube.radius = ratio * end.radius;
-        tube.score = score_of(end, tube, near) - 2 * (ratio - 1);
+        tube.score = score_of(end, tube, beside) - 2 * (ratio - 1);
         tubes.push_back(tube);
       }
+    }
     std::stable_sort(tubes.begin(), tubes.end(), [](const Bent_tube& a, const Bent_tube& b) {
       return a.score > b.score;
     });
@@ -249,13 +280,15 @@ private:
       const Vec3 chord = straight.target.point - end.point;
       const double length = chord.norm();
       const Vec3 e1 = chord.unitOrthogonal(), e2 = chord.cross(e1).normalized();
-      for (const double share : {0.03, 0.06, 0.1, 0.15})
+      const std::vector<Chord_point> beside =
+          points_beside(chord, std::max(end.radius, straight.radius), most_bent, offsets);
+      for (const double share : {0.03, 0.06, 0.1, most_bent})
         for (int k = 0; k < 8; ++k) {
           const double turn = 2 * pcs::internal::pi * k / 8;
           Bent_tube tube = straight;
           tube.bend = share * length * (std::cos(turn) * e1 + std::sin(turn) * e2);
           tube.score =
-              score_of(end, tube, near) - 2 * (straight.radius / end.radius - 1) - 10 * share;
+              score_of(end, tube, beside) - 2 * (straight.radius / end.radius - 1) - 10 * share;
           if (tube.score > best.score)
             best = tube;
         }
