@@ -93,13 +93,14 @@ public:
   /// Adds the pieces of coarse axes. Returns their number.
   std::size_t add_pieces(const std::vector<Coarse_axis>& coarse)
   {
+    const std::vector<std::uint8_t> is_used = used();
     const Chain_options chains;
     const Thick_end_options rules;
-    Held_axes axes(scan, chains, rules, m_root, set);
+    Held_axes axes(scan, is_used, chains, rules, m_root, set);
     std::size_t count = 0;
     for (const Coarse_axis& axis : coarse)
       count +=
-          add_coarse_pieces(scan, used(), axis, set.noise, chains, Coarse_axis_options(), axes);
+          add_coarse_pieces(scan, is_used, axis, set.noise, chains, Coarse_axis_options(), axes);
     axes.drop_lost();
     return count;
   }
@@ -216,7 +217,7 @@ BOOST_AUTO_TEST_CASE(dense_twigs_are_left_out)
   const std::vector<std::uint8_t> used(limb.scan.size(), 1);
   const auto count = [&](double thick) {
     const std::vector<std::uint8_t> left =
-        internal::points_of_sparse_wood(limb.scan, used, Coarse_axis_options(), thick, limb.set);
+        points_of_sparse_wood(limb.scan, used, Coarse_axis_options(), thick, limb.set);
     return static_cast<std::size_t>(std::count(left.begin(), left.end(), 1));
   };
   BOOST_TEST(count(0) == limb.scan.size());

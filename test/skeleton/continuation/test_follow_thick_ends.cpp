@@ -28,6 +28,8 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846, trunk_radius = 0.1, limb_radius = 0.04;
 constexpr double inner = 0.8, outer = 1.6; ///< ends of the sparse part and of the limb
+constexpr std::size_t number_of_twigs = 6;
+constexpr double twig_radius = 0.002;
 
 /// A trunk and a limb. The axis of the limb begins at `inner`, where its points become dense.
 class Limb
@@ -38,8 +40,12 @@ public:
   std::vector<Index> root; ///< lowest points
 
   /// `number_of_points` is the number on the inner part of the limb. They lie up to `depth` radii
-  /// below its surface. If `is_forked`, a second limb begins where the points become dense.
-  Limb(std::size_t number_of_points, double depth, bool is_forked = false)
+  /// below its surface. If `is_forked`, a second limb begins where the points become dense. Six
+  /// twigs with axes run along the surface if each has points.
+  Limb(std::size_t number_of_points,
+       double depth,
+       bool is_forked = false,
+       std::size_t points_of_twig = 0)
   {
     const Vec3 fork = inner * m_along + m_seat, tip = fork + (outer - inner) * Vec3(0.6, 0, 0.8);
     add_tube(0, Vec3::Zero(), Vec3(0, 0, 2), trunk_radius);
@@ -47,6 +53,9 @@ public:
     if (is_forked)
       add_tube(2, fork, tip, limb_radius);
     add_few(number_of_points, depth);
+    const Index first_twig = is_forked ? 3 : 2;
+    for (std::size_t k = 0; k < number_of_twigs; ++k)
+      add_twig(first_twig + static_cast<Index>(k), k, points_of_twig);
     prepare_scan<CGAL::Sequential_tag>(m_points, Vec3::UnitZ(), scan);
     std::fill(scan.is_outlier.begin(), scan.is_outlier.end(), std::uint8_t(0));
     set.noise = 0.001 / scan.frame.unit;
@@ -54,6 +63,8 @@ public:
     add_axis(fork, outer * m_along + m_seat, limb_radius);
     if (is_forked)
       add_axis(fork, tip, limb_radius);
+    for (std::size_t k = 0; k < number_of_twigs && points_of_twig > 0; ++k)
+      add_axis(on_surface(k, trunk_radius), on_surface(k, inner), twig_radius);
     pcs_test::assign_points(scan, m_axis, set);
     for (std::size_t k = 0; k < m_points.size(); ++k)
       if (m_points[k].z() < 0.02)
@@ -117,6 +128,20 @@ private:
       const double r = limb_radius * (1 - depth * double(k % 4) / 3), t = golden * double(k);
       add(none, m_seat + z * m_along + r * (std::cos(t) * e1 + std::sin(t) * e2));
     }
+  }
+  /// Returns a place on the surface of the limb.
+  Vec3 on_surface(std::size_t twig, double z) const
+  {
+    const double t = 2 * pi * double(twig) / double(number_of_twigs);
+    const Vec3 e1 = m_along.unitOrthogonal(), e2 = m_along.cross(e1);
+    return m_seat + z * m_along + limb_radius * (std::cos(t) * e1 + std::sin(t) * e2);
+  }
+  void add_twig(Index axis, std::size_t twig, std::size_t count)
+  {
+    for (std::size_t k = 0; k < count; ++k)
+      add(axis,
+          on_surface(twig,
+                     trunk_radius + (inner - trunk_radius) * (double(k) + 0.5) / double(count)));
   }
   void add_axis(const Vec3& a, const Vec3& b, double r)
   {
@@ -204,7 +229,8 @@ BOOST_AUTO_TEST_CASE(held_thick_axes_keep_their_points)
   Limb limb(70, 0);
   const Chain_options chains;
   const Thick_end_options rules;
-  Held_axes axes(limb.scan, chains, rules, limb.root, limb.set);
+  const std::vector<std::uint8_t> is_free(limb.scan.size(), 1);
+  Held_axes axes(limb.scan, is_free, chains, rules, limb.root, limb.set);
   BOOST_TEST_REQUIRE(axes.is_held(0));
   const std::size_t count = limb.set.axes[0].number_of_points;
   Axis fat = limb.set.axes[0].axis; // encloses the trunk
@@ -212,6 +238,13 @@ BOOST_AUTO_TEST_CASE(held_thick_axes_keep_their_points)
     node.radius *= 2;
   axes.replace(1, fat, 0);
   BOOST_TEST(limb.set.axes[0].number_of_points == count);
+}
+
+BOOST_AUTO_TEST_CASE(dense_twigs_do_not_continue_a_limb)
+{
+  Limb strands(0, 0, false, 12), twigs(0, 0, false, 120); // 17 and 170 points per metre
+  BOOST_TEST(strands.follow().number_of_ends == 1u);
+  BOOST_TEST(twigs.follow().number_of_ends == 0u);
 }
 
 BOOST_AUTO_TEST_CASE(points_inside_are_no_wood_and_are_counted)

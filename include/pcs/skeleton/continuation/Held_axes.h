@@ -41,13 +41,16 @@ public:
     double extent = 0; ///< radius of the ball [L]
   };
 
-  /// Keeps references to all arguments. `root`: points of the root.
+  /// Keeps references to all arguments. `is_free`: points that a continuation may explain; `root`:
+  /// points of the root.
   Held_axes(const Scan& scan,
+            const std::vector<std::uint8_t>& is_free,
             const Chain_options& chains,
             const Thick_end_options& rules,
             const std::vector<Index>& root,
             Axis_set& set)
     : m_scan(scan),
+      m_is_free(is_free),
       m_chains(chains),
       m_rules(rules),
       m_root(root),
@@ -157,7 +160,7 @@ public:
       const bool is_rest = m_set.axis_of_point[i] == a &&
                            m_set.segment_of_point[i] >= line.rest_begin &&
                            m_set.segment_of_point[i] < line.rest_end;
-      return is_rest || !may_take(i, a, end.radius);
+      return is_rest || !m_is_free[i] || !may_take(i, a, end.radius);
     };
     near.erase(std::remove_if(near.begin(), near.end(), is_taken), near.end());
     return near;
@@ -362,6 +365,7 @@ private:
   }
 
   const Scan& m_scan;
+  const std::vector<std::uint8_t>& m_is_free;
   const Chain_options& m_chains;
   const Thick_end_options& m_rules;
   const std::vector<Index>& m_root;

@@ -45,8 +45,6 @@ struct Coarse_axis
   double thinnest = 0; ///< radius below which the axis is not credible [L]
 };
 
-namespace internal {
-
 /// Returns which points of `is_used` may lie on wood that the axes of `set` miss: all but those of
 /// twigs, thinner than `thinnest` [L], that have as many points as the scan has elsewhere. Strands
 /// along the surface of thick wood have fewer. O(points + nodes).
@@ -82,6 +80,8 @@ inline std::vector<std::uint8_t> points_of_sparse_wood(const Scan& scan,
                 !(set.is_covered(i) && is_twig[set.axis_of_point[i]][set.segment_of_point[i]]);
   return result;
 }
+
+namespace internal {
 
 /// Returns a subset of the points of `is_used` that are at least `distance` [L] apart, and within
 /// `distance` of all others. Empty if `is_running()` returns `false`. O(points log n).
@@ -193,7 +193,7 @@ std::vector<Coarse_axis> find_coarse_axes(const Scan& scan,
   for (const Index i : root)
     places.push_back(scan.points[i]);
   const std::vector<std::uint8_t> is_sparse =
-      internal::points_of_sparse_wood(scan, is_used, rules, thick, set);
+      points_of_sparse_wood(scan, is_used, rules, thick, set);
   const double share = 1 / double(rules.factors.size());
   bool is_running = true;
   for (std::size_t k = 0; k < rules.factors.size(); ++k) {

@@ -40,8 +40,8 @@ struct Followed_ends
   of the coarsest axes first. Then each thick axis that is not held (`Held_axes`) is continued
   towards the root, by a tube to a held axis or by pieces (`Thick_continuation`) until a tube leads
   to one; if this fails, it does not change, and unexplained points around its base are counted if
-  no held axis of similar thickness is near. Last, short gaps are left to `join_axes()`, and the
-  bases beyond them are continued.
+  no held axis of similar thickness is near. Points of dense twigs do not support a continuation.
+  Last, short gaps are left to `join_axes()`, and the bases beyond them are continued.
 
   A continued axis takes over the points on its surface from thinner and from much smaller axes, but
   not from held thick ones. Axes that lose most of their points are dropped. `is_used`: points of
@@ -58,7 +58,13 @@ inline Followed_ends follow_thick_ends(const Scan& scan,
                                        const pcs::internal::Go_on& go_on,
                                        Axis_set& set)
 {
-  Held_axes axes(scan, chains, rules, root, set);
+  const std::vector<std::uint8_t> is_free =
+      points_of_sparse_wood(scan,
+                            is_used,
+                            coarse_rules,
+                            rules.least_radius(scan.spacing, set.noise),
+                            set);
+  Held_axes axes(scan, is_free, chains, rules, root, set);
   Followed_ends result;
   for (std::size_t k = 0; k < coarse.size(); ++k) {
     if (!pcs::internal::goes_on(go_on, 0.5 * double(k) / double(coarse.size())))
