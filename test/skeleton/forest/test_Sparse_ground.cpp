@@ -113,6 +113,19 @@ BOOST_AUTO_TEST_CASE(no_points_and_one_point_have_no_height_of_nan)
   BOOST_TEST(std::abs(one.height(Vec3(1, 2, 4)) - 1) < 1e-6);
 }
 
+BOOST_AUTO_TEST_CASE(a_tiny_breast_height_keeps_points_apart)
+{
+  const Sparse_ground_options rules;
+  Scan scan;
+  for (int i = 0; i < 5; ++i)
+    scan.points.emplace_back(i, -2 * i, 0.1 * i);
+  for (const double breast_height : {1e-19, 1e-30, 1e-300}) {
+    const Sparse_ground ground(scan, breast_height, rules, {1, 1, 1, 1, 1});
+    for (const Vec3& p : scan.points)
+      BOOST_TEST(std::abs(ground.height(p)) < 1e-9, breast_height << ": " << ground.height(p));
+  }
+}
+
 BOOST_AUTO_TEST_SUITE_END()
 
 } // namespace test_Sparse_ground

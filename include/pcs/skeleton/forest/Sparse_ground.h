@@ -58,7 +58,7 @@ public:
                 double breast_height,
                 const Sparse_ground_options& rules,
                 const std::vector<std::uint8_t>& is_solid)
-    : m_rules(rules), m_cell(rules.cell * breast_height)
+    : m_rules(rules), m_cell(side_of_squares(scan, rules.cell * breast_height))
   {
     find_candidates(scan, is_solid);
     double deviation = rules.thickest * breast_height;
@@ -107,6 +107,16 @@ private:
       return p.z() - plane(0) - plane.tail<2>().dot(d);
     }
   };
+
+  /// Returns the wanted side of the squares, or a larger one if their indices were too large for
+  /// integers [L].
+  static double side_of_squares(const Scan& scan, double wanted)
+  {
+    double farthest = 0;
+    for (const Vec3& p : scan.points)
+      farthest = std::max({farthest, std::abs(p.x()), std::abs(p.y())});
+    return std::max({wanted, 1e-15 * farthest, std::numeric_limits<double>::min()});
+  }
 
   Key key_of(const Vec3& p) const
   {
