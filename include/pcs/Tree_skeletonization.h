@@ -152,12 +152,13 @@ public:
         \npdefault `default_breast_height`, for scans in metres
       \np{number_of_resamples} number of random subsets of the scan whose skeletons give the
           standard deviations in `Skeleton_report::spread` [count]. A subset has 90 % of the points,
-          but at most 40,000, and takes as long as a scan of its size. If the subsets have at least
-          half of the points, the majority of the scan and the subsets decides whether there are
-          leaves, and a skeleton that differs from most subsets is replaced by that of points
-          displaced by a thousandth of their spacing. Where the medians of these subsets are
-          uncertain, there are up to four times as many, with at most 200,000 points together. Scans
-          with fewer than 100 points have no subsets
+          but at most 40,000, and takes as long as a scan of its size; several are processed at a
+          time. If the subsets have at least half of the points, the medians of all skeletons are
+          `Skeleton_report::estimates`, the majority of the scan and the subsets decides whether
+          there are leaves, and a skeleton that differs from most subsets is replaced by that of
+          points displaced by a thousandth of their spacing. Where the medians are uncertain, there
+          are up to four times as many subsets, with at most 200,000 points together, and at most as
+          many displaced scans. Scans with fewer than 100 points have no subsets
         \nptype integer, 0 to 100
         \npdefault 0: the spread is not estimated
       \np{wood_map} whether a point may belong to a branch; others (leaves) are not used

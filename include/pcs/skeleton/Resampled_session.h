@@ -23,9 +23,10 @@ namespace skeleton {
   The skeletonization of a scan and of random subsets of it.
 
   The deviations among the subsets, called copies, are the basis of `standard_errors()`. If the
-  copies have at least half of the points, the majority of the scan and the copies decides whether
-  there are leaves, and a skeleton that is far from the medians of the copies is replaced by a more
-  typical one. There are more copies of small scans if the medians of the first ones are uncertain.
+  copies have at least half of the points, the medians of all skeletons are the estimates of the
+  report, the majority of the scan and the copies decides whether there are leaves, and a skeleton
+  that is far from the medians of the copies is replaced by a more typical one. There are more
+  skeletons of small scans if their medians are uncertain.
   Cancelled calls may be repeated; they continue with the interrupted skeleton.
 */
 template <class ConcurrencyTag>
@@ -54,7 +55,6 @@ public:
   Skeleton_report report() const;
 
 private:
-  bool has_copies() const { return m_number_of_copies > 0; }
   /// A skeleton of a copy or of displaced points.
   struct Variant
   {
@@ -64,6 +64,7 @@ private:
     Vec3 root = Vec3::Zero();
   };
 
+  bool has_copies() const { return m_number_of_copies > 0; }
   std::unique_ptr<Session> make_session(Scan_points points) const;
   template <class Make, class Complete>
   bool extract_variants(const Make& make,
@@ -83,7 +84,8 @@ private:
   std::size_t m_number_of_wanted_copies = 0; ///< `number_of_resamples`
   std::size_t m_number_of_copies = 0;        ///< more, if those differ too much
   std::size_t m_number_of_completed_copies = 0;
-  Copy_descriptors m_copies, m_skeletons; ///< of copies; of these, the scan and displaced points
+  Copy_descriptors m_copies;
+  Copy_descriptors m_skeletons; ///< of the copies, the scan and displaced points; may be empty
   std::unique_ptr<Session> m_session;
   std::vector<Variant> m_variants;    ///< in work
   std::size_t m_number_of_trials = 0; ///< see `choose_typical_skeleton()`
